@@ -1,0 +1,1 @@
+//! The `atm` command as a library.

@@ -1,0 +1,198 @@
+//! Where two arcs cross, and whether they do so steeply enough (Sec. III-A and III-C).
+
+use nalgebra::Vector2;
+
+use crate::{
+    arc::{Arc, Bearing, cross},
+    error::DomainError,
+    scalar::Scalar,
+};
+
+/// The smallest angle at which a crossing counts: θmin, in \[1°, 90°\], inclusive (Sec. III-C).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MinAngle<T> {
+    cos: T,
+    cot_half: T,
+}
+
+impl<T: Scalar> MinAngle<T> {
+    /// 30° (Sec. IV-B).
+    pub const PAPER: Self = Self { cos: T::COS_30_DEG, cot_half: T::COT_15_DEG };
+
+    /// An angle in radians.
+    pub fn new(radians: T) -> Result<Self, DomainError> {
+        let degree = T::PI / T::from_count(180);
+        let right_angle = T::PI / T::TWO;
+        if !(radians >= degree && radians <= right_angle) {
+            return Err(DomainError::MinAngle);
+        }
+        let (_, cos) = radians.sine_cosine();
+        Ok(Self { cos, cot_half: T::ONE / (radians / T::TWO).tangent() })
+    }
+
+    /// cot(θmin/2) = 1/sin θmin + 1/tan θmin: the interval L in units of the range resolution.
+    pub const fn cot_half(&self) -> T {
+        self.cot_half
+    }
+
+    /// The angle, in radians.
+    pub fn radians(&self) -> T {
+        T::TWO * T::ONE.arc_tangent_2(self.cot_half)
+    }
+}
+
+/// A point that lies on two arcs, within both beams.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing<T: Scalar> {
+    pub(crate) offset: Vector2<T>,
+    pub(crate) sine: T,
+    pub(crate) cosine_between: T,
+}
+
+impl<T: Scalar> Crossing<T> {
+    /// From the first arc's sensor to the crossing, in metres.
+    pub const fn offset(&self) -> Vector2<T> {
+        self.offset
+    }
+
+    /// Its direction on the first arc.
+    pub fn bearing(&self) -> Bearing<T> {
+        Bearing::from_sine(self.sine)
+    }
+
+    /// The angle between the arcs' tangents, folded to \[0, π/2\], in radians.
+    pub fn angle(&self) -> T {
+        self.cosine_between.arc_cosine()
+    }
+}
+
+/// Visits the crossings of `arc` with `other` that are at least `min_angle` steep: none, one or two.
+///
+/// With d the distance of the sensors, the radii meet at the crossing with cos θ = (rA² + rB² − d²) / (2 rA rB), the same
+/// for both intersections of the circles. So the test comes before any root, and what it lets through is neither
+/// concentric nor coincident nor tangent nor apart: no epsilon is needed. Beams include their edges.
+#[inline(always)]
+pub fn crossings<T: Scalar>(arc: &Arc<T>, other: &Arc<T>, min_angle: &MinAngle<T>, mut visit: impl FnMut(Crossing<T>)) {
+    let between = other.sensor - arc.sensor;
+    let distance_squared = between.x * between.x + between.y * between.y;
+    let (square, other_square) = (arc.radius * arc.radius, other.radius * other.radius);
+    let twice_product = T::TWO * (arc.radius * other.radius);
+    let numerator = (square + other_square) - distance_squared;
+    // |cos|: radii that face each other cross near 180 degrees.
+    if !(numerator.magnitude() <= twice_product * min_angle.cos) {
+        return;
+    }
+    // The circles' intersections from the first centre: along the line of centres, then to either side of it, where
+    // 4 × the triangle's area = √((2 rA rB)² − numerator²).
+    let scale = T::HALF / distance_squared;
+    let along = (square - other_square + distance_squared) * scale;
+    let aside = ((twice_product - numerator) * (twice_product + numerator)).square_root() * scale;
+    let foot = between * along;
+    let side = Vector2::new(-between.y, between.x) * aside;
+    let axis = arc.axis();
+    for offset in [foot + side, foot - side] {
+        if arc.sees(offset) && other.sees(offset - between) {
+            let sine = cross(axis, offset) / square;
+            // Rounding may carry the sine a last place past 1; a reading so short that its square is 0 has no azimuth.
+            if let Some(sine) = unit_interval(sine) {
+                visit(Crossing { offset, sine, cosine_between: numerator.magnitude() / twice_product });
+            }
+        }
+    }
+}
+
+fn unit_interval<T: Scalar>(sine: T) -> Option<T> {
+    if sine > T::ONE {
+        Some(T::ONE)
+    } else if sine < -T::ONE {
+        Some(-T::ONE)
+    } else if sine.magnitude() <= T::ONE {
+        Some(sine)
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::PI;
+
+    use nalgebra::Isometry2;
+
+    use super::*;
+    use crate::sensor::Beam;
+
+    fn arc(x: f64, y: f64, yaw_deg: f64, radius: f64, field_of_view_deg: f64) -> Arc<f64> {
+        let pose = Isometry2::new(Vector2::new(x, y), yaw_deg.to_radians());
+        Arc::new(&pose, radius, &Beam::new(field_of_view_deg.to_radians()).unwrap())
+    }
+
+    fn count(a: &Arc<f64>, b: &Arc<f64>, min_angle_deg: f64) -> usize {
+        let mut count = 0;
+        crossings(a, b, &MinAngle::new(min_angle_deg.to_radians()).unwrap(), |_| count += 1);
+        count
+    }
+
+    #[test]
+    fn equal_circles_a_diagonal_apart_cross_at_right_angles() {
+        // Sensors at (0,0) and (2,0), both radius √2, looking at (1,1): the radii are perpendicular there.
+        let a = arc(0.0, 0.0, 45.0, 2f64.sqrt(), 20.0);
+        let b = arc(2.0, 0.0, 135.0, 2f64.sqrt(), 20.0);
+        let mut found = None;
+        crossings(&a, &b, &MinAngle::PAPER, |crossing| found = Some(crossing));
+        let crossing = found.unwrap();
+        assert!((crossing.offset() - Vector2::new(1.0, 1.0)).norm() < 1e-15);
+        assert!((crossing.angle() - PI / 2.0).abs() < 1e-15);
+        assert!(crossing.bearing().azimuth().abs() < 1e-15);
+    }
+
+    #[test]
+    fn both_intersections_count_where_both_lie_in_both_beams() {
+        let a = arc(0.0, 0.0, 0.0, 1.0, 180.0);
+        let b = arc(1.2, 0.0, 180.0, 1.0, 180.0);
+        assert_eq!(count(&a, &b, 30.0), 2);
+        assert_eq!(count(&a, &arc(1.2, 0.0, 90.0, 1.0, 170.0), 30.0), 1);
+    }
+
+    #[test]
+    fn concentric_coincident_tangent_and_disjoint_circles_are_rejected() {
+        let a = arc(0.0, 0.0, 0.0, 1.0, 180.0);
+        assert_eq!(count(&a, &arc(0.0, 0.0, 0.0, 0.5, 180.0), 1.0), 0, "concentric");
+        assert_eq!(count(&a, &a, 1.0), 0, "coincident");
+        assert_eq!(count(&a, &arc(2.0, 0.0, 180.0, 1.0, 180.0), 1.0), 0, "external_tangent");
+        assert_eq!(count(&a, &arc(0.5, 0.0, 0.0, 0.5, 180.0), 1.0), 0, "internal_tangent");
+        assert_eq!(count(&a, &arc(5.0, 0.0, 180.0, 1.0, 180.0), 1.0), 0, "disjoint");
+    }
+
+    #[test]
+    fn angle_counts_from_the_threshold_upwards_on_both_sides_of_a_right_angle() {
+        // Equal radii 1 at distance d: cos θ = 1 − d²/2, so θ = 2 asin(d/2).
+        for angle in [29.9f64, 30.1, 150.1, 149.9] {
+            let distance = 2.0 * (angle / 2.0).to_radians().sin();
+            let a = arc(0.0, 0.0, 90.0, 1.0, 180.0);
+            let b = arc(distance, 0.0, 90.0, 1.0, 180.0);
+            let expected = usize::from((30.0..=150.0).contains(&angle));
+            assert_eq!(count(&a, &b, 30.0), expected, "{angle}");
+        }
+    }
+
+    #[test]
+    fn angle_domain_is_one_to_ninety_degrees() {
+        assert!(MinAngle::new(0.9f64.to_radians()).is_err());
+        assert!(MinAngle::new(1f64.to_radians()).is_ok());
+        assert!(MinAngle::new(90f64.to_radians()).is_ok());
+        assert!(MinAngle::new(90.1f64.to_radians()).is_err());
+        assert!(MinAngle::new(f64::NAN).is_err());
+        assert!(MinAngle::new(1f32.to_radians()).is_ok());
+        assert!(MinAngle::new(90f32.to_radians()).is_ok());
+    }
+
+    #[test]
+    fn paper_angle_is_thirty_degrees() {
+        let paper = MinAngle::<f64>::PAPER;
+        let computed = MinAngle::new(30f64.to_radians()).unwrap();
+        assert!((paper.radians() - PI / 6.0).abs() < 1e-15);
+        assert!((paper.cos - computed.cos).abs() < 1e-15);
+        assert!((paper.cot_half() - computed.cot_half()).abs() < 1e-14);
+    }
+}

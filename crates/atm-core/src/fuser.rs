@@ -1,0 +1,275 @@
+//! The orchestrator: Section III as code.
+
+use nalgebra::{Isometry2, Point2, Vector2};
+
+use crate::{
+    arc::{Arc, Bearing},
+    error::Rejected,
+    estimator::{Estimator, ReportedArc, TransversalMedian, Verdict},
+    local_map::{Bounds, LocalMap, Newcomer, Partners, Scope},
+    pose::{Odometer, usable},
+    scalar::Scalar,
+    sensor::{Beam, Range, RangeResolution},
+    storage::{Entry, SettledStorage, SnapshotStorage, Storage},
+};
+
+/// One reading, with all that the fusion has to know of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Reading<T: Scalar> {
+    /// When it was taken, in nanoseconds; not before the reading that came last.
+    pub t: i64,
+    /// The sensor's index, below the storage's number of sensors.
+    pub sensor: u16,
+    /// What was measured.
+    pub range: Range<T>,
+    /// The SENSOR's pose in the fixed frame, boresight along +x: the robot's pose times the mount.
+    pub pose: Isometry2<T>,
+    /// The robot's position in the fixed frame, in metres: the travelled path is counted along it.
+    pub robot: Point2<T>,
+    /// The sensor's beam.
+    pub beam: Beam<T>,
+    /// The sensor's range resolution, at this range.
+    pub range_resolution: RangeResolution<T>,
+}
+
+/// What became of a reading that could be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Arrival {
+    /// It is in the local map now.
+    Entered,
+    /// Skipped: equal to its sensor's previous reading ([`Bounds::with_held_dropped`]).
+    Held,
+    /// Skipped: its sensor has moved too little ([`Bounds::with_min_step`]).
+    Still,
+}
+
+/// A transversal crossing on a reported arc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ArcCrossing<T: Scalar> {
+    /// Time of the reported arc's reading, in nanoseconds.
+    pub t: i64,
+    /// Its sensor.
+    pub sensor: u16,
+    /// Time of the other arc's reading, in nanoseconds.
+    pub t_other: i64,
+    /// Its sensor.
+    pub sensor_other: u16,
+    /// The crossing in the fixed frame, in metres.
+    pub position: Point2<T>,
+    /// Its direction on the reported arc.
+    pub bearing: Bearing<T>,
+    /// The crossing angle, folded to \[0, π/2\], in radians.
+    pub angle: T,
+}
+
+/// Where reports go. Any `FnMut(&E)` is one that takes the echoes alone.
+pub trait Sink<T: Scalar, E> {
+    /// Whether [`Sink::crossing`] is to be called.
+    const WANTS_CROSSINGS: bool = false;
+
+    /// An arc's echo.
+    fn echo(&mut self, echo: &E);
+
+    /// An arc that gave no echo, with its count of crossings.
+    fn ignored(&mut self, _crossings: u32) {}
+
+    /// A crossing on the arc that is reported next, by its echo or as ignored. In no particular order.
+    fn crossing(&mut self, _crossing: &ArcCrossing<T>) {}
+}
+
+impl<T: Scalar, E, F: FnMut(&E)> Sink<T, E> for F {
+    fn echo(&mut self, echo: &E) {
+        self(echo);
+    }
+}
+
+/// Turns readings into echoes, one at a time, at a cost that does not grow with their number.
+///
+/// A const constructor on const storage makes a fuser that can be a `static`:
+///
+/// ```
+/// use atm_core::{Bounds, Fuser, LatestArrays, TransversalMedian};
+/// static FUSER: Fuser<f32, LatestArrays<f32, 16, 10>> =
+///     Fuser::latest(TransversalMedian::PAPER, Bounds::NONE, LatestArrays::new());
+/// ```
+#[derive(Debug, Clone)]
+pub struct Fuser<T: Scalar, S, E = TransversalMedian<T>> {
+    estimator: E,
+    bounds: Bounds<T>,
+    settled: bool,
+    map: LocalMap<S>,
+    odometer: Odometer<T>,
+    latest: Option<i64>,
+}
+
+impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
+    /// A fuser that reports each echo at its reading's arrival, from the arcs in the local map then: causal, no delay.
+    pub const fn latest(estimator: E, bounds: Bounds<T>, storage: S) -> Self {
+        let map = LocalMap::new(storage, false);
+        Self { estimator, bounds, settled: false, map, odometer: Odometer::new(), latest: None }
+    }
+
+    /// A fuser that reports each echo when its reading leaves the local map, from every arc it met.
+    pub const fn settled(estimator: E, bounds: Bounds<T>, storage: S) -> Self
+    where
+        S: SettledStorage<T>,
+    {
+        let map = LocalMap::new(storage, true);
+        Self { estimator, bounds, settled: true, map, odometer: Odometer::new(), latest: None }
+    }
+
+    /// Takes one reading in, and reports what that settles.
+    ///
+    /// # Errors
+    /// A reading that can't be used changes nothing: see [`Rejected`].
+    pub fn push(&mut self, reading: &Reading<T>, sink: &mut impl Sink<T, E::Echo>) -> Result<Arrival, Rejected> {
+        self.check(reading)?;
+        self.latest = Some(reading.t);
+        let travel = self.odometer.advance(reading.robot);
+        if let Some(skipped) = self.skip(reading) {
+            return Ok(skipped);
+        }
+        // The leavers leave first, then the newcomer meets all that remain, then it enters.
+        let newcomer = Newcomer { sensor: reading.sensor, t: reading.t, travel };
+        while let Some(slot) = self.map.next_leaver(&newcomer, &self.bounds) {
+            self.leave(slot, sink);
+        }
+        let arc = reading.range.echo().map(|radius| Arc::new(&reading.pose, radius, &reading.beam));
+        let slot = self.map.enter(
+            reading.sensor,
+            Entry {
+                sensor_position: Point2::from(reading.pose.translation.vector),
+                arc,
+                t: reading.t,
+                travel,
+                arrival: 0,
+                beam: reading.beam,
+                range_resolution: reading.range_resolution,
+            },
+        );
+        if let (false, Some(arc)) = (self.settled, arc) {
+            let reported = ReportedArc {
+                arc,
+                t: reading.t,
+                sensor: reading.sensor,
+                field_of_view: reading.beam.field_of_view(),
+                range_resolution: reading.range_resolution,
+            };
+            self.report(slot, &reported, Scope::Present, sink);
+        }
+        Ok(Arrival::Entered)
+    }
+
+    /// Ends a log: empties the local map, with the echoes of its readings reported where they are due. What is pushed
+    /// next begins anew, at any time and place.
+    pub fn finish(&mut self, sink: &mut impl Sink<T, E::Echo>) {
+        while let Some((_, slot)) = self.map.oldest_present() {
+            self.leave(slot, sink);
+        }
+        self.map.forget();
+        self.odometer.lift();
+        self.latest = None;
+    }
+
+    /// Moves the origin of the fixed frame to `by`: every position that is held is reduced by it, in metres.
+    ///
+    /// For single precision far from the origin; see [`crate::Anchor`].
+    pub fn shift_origin(&mut self, by: Vector2<T>) {
+        self.map.shift(by);
+        self.odometer.shift(by);
+    }
+
+    fn check(&mut self, reading: &Reading<T>) -> Result<(), Rejected> {
+        if usize::from(reading.sensor) >= self.map.storage.columns().rings.len() {
+            return Err(Rejected::UnknownSensor);
+        }
+        if !(usable(&reading.pose) && reading.robot.x.finite() && reading.robot.y.finite()) {
+            return Err(Rejected::Pose);
+        }
+        if self.latest.is_some_and(|latest| reading.t < latest) {
+            return Err(Rejected::TimeBackwards);
+        }
+        Ok(())
+    }
+
+    /// Whether the reading takes no slot, and why.
+    fn skip(&mut self, reading: &Reading<T>) -> Option<Arrival> {
+        let columns = self.map.storage.columns();
+        let depth = columns.depth();
+        let ring = columns.rings.get_mut(usize::from(reading.sensor))?;
+        let range = reading.range.echo().unwrap_or(T::NAN);
+        // Total order: all readings without echo are the same NaN, and equal.
+        let held = ring.last.replace(range).is_some_and(|last| last.order(&range).is_eq());
+        if held && self.bounds.drop_held {
+            return Some(Arrival::Held);
+        }
+        let (min_step, newest) =
+            (self.bounds.min_step?, usize::from(reading.sensor) * depth + usize::from(ring.newest));
+        if ring.present == 0 {
+            return None;
+        }
+        let step = reading.pose.translation.vector - columns.sensor_position(newest).coords;
+        (step.x * step.x + step.y * step.y < min_step * min_step).then_some(Arrival::Still)
+    }
+
+    /// Reports the echo of a reading that leaves, if that is when it is due, and takes it out of the local map.
+    fn leave(&mut self, slot: usize, sink: &mut impl Sink<T, E::Echo>) {
+        if self.settled {
+            self.report_stored(slot, Scope::Met, sink);
+        }
+        self.map.depart(slot);
+    }
+
+    fn report_stored(&mut self, slot: usize, scope: Scope, sink: &mut impl Sink<T, E::Echo>) {
+        let columns = self.map.storage.columns();
+        let at = |column: &[T]| column.get(slot).copied().unwrap_or(T::NAN);
+        let (field_of_view, resolution) = (at(columns.field_of_view), at(columns.range_resolution));
+        let sensor = slot.checked_div(columns.depth()).unwrap_or(0) as u16;
+        let (arc, t) = (columns.arc(slot), columns.time(slot));
+        // A reading without echo has no arc, and nothing to report.
+        if let (true, Ok(range_resolution)) = (arc.radius > T::ZERO, RangeResolution::new(resolution)) {
+            self.report(slot, &ReportedArc { arc, t, sensor, field_of_view, range_resolution }, scope, sink);
+        }
+    }
+
+    /// Sec. III: collect the arc's transversal crossings with the arcs it met, take their median, say so.
+    fn report<K: Sink<T, E::Echo>>(&mut self, slot: usize, arc: &ReportedArc<T>, scope: Scope, sink: &mut K) {
+        let estimator = &self.estimator;
+        self.map.storage.with_scratch(|columns, scratch| {
+            let partners = Partners { columns: &columns, slot, scope };
+            let verdict = estimator.estimate(arc, &partners, scratch, |other, crossing| {
+                if K::WANTS_CROSSINGS {
+                    sink.crossing(&ArcCrossing {
+                        t: arc.t,
+                        sensor: arc.sensor,
+                        t_other: columns.time(other),
+                        sensor_other: other.checked_div(columns.depth()).unwrap_or(0) as u16,
+                        position: arc.arc.sensor() + crossing.offset(),
+                        bearing: crossing.bearing(),
+                        angle: crossing.angle(),
+                    });
+                }
+            });
+            match verdict {
+                Verdict::Echo(echo) => sink.echo(&echo),
+                Verdict::Ignored(crossings) => sink.ignored(crossings),
+            }
+        });
+    }
+}
+
+impl<T: Scalar, S: SnapshotStorage<T>, E: Estimator<T>> Fuser<T, S, E> {
+    /// Reports every arc of the local map against the others in it, now, in input order: what a planner asks for.
+    ///
+    /// Changes nothing. In either mode.
+    pub fn snapshot(&mut self, sink: &mut impl Sink<T, E::Echo>) {
+        let scope = if self.settled { Scope::PresentOfKept } else { Scope::Present };
+        for ordinal in 0..self.map.span() {
+            if let Some(slot) = self.map.present_at(ordinal) {
+                self.report_stored(slot, scope, sink);
+            }
+        }
+    }
+}

@@ -1,0 +1,362 @@
+//! The local map: the most recent H readings of every sensor, and who is in it when (Sec. IV-D, Length of sonar history).
+
+use nalgebra::Vector2;
+
+use crate::{
+    arc::Arc,
+    pose::Travel,
+    scalar::Scalar,
+    storage::{Columns, Entry, Storage},
+};
+
+/// More bounds on the local map than H, and readings that take no place in it.
+///
+/// ```
+/// use atm_core::{Bounds, Travel};
+/// let bounds = Bounds::<f64>::NONE.with_max_age(30_000_000_000).with_max_travel(Travel::from_metres(5.0)?);
+/// # Ok::<(), atm_core::DomainError>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds<T> {
+    pub(crate) max_age: Option<u64>,
+    pub(crate) max_travel: Option<Travel>,
+    pub(crate) min_step: Option<T>,
+    pub(crate) drop_held: bool,
+}
+
+impl<T: Scalar> Bounds<T> {
+    /// H alone.
+    pub const NONE: Self = Self { max_age: None, max_travel: None, min_step: None, drop_held: false };
+
+    /// A reading leaves at the first arrival that is more than this later, in nanoseconds.
+    pub const fn with_max_age(self, nanoseconds: u64) -> Self {
+        Self { max_age: Some(nanoseconds), ..self }
+    }
+
+    /// A reading leaves at the first arrival after more than this much path.
+    pub const fn with_max_travel(self, travel: Travel) -> Self {
+        Self { max_travel: Some(travel), ..self }
+    }
+
+    /// A reading whose sensor moved less than this (metres, positive) since its last one in the local map is skipped.
+    ///
+    /// A robot that stands still repeats the same crossing with every reading, and so turns a single into a confident
+    /// median.
+    pub fn with_min_step(self, metres: T) -> Result<Self, crate::DomainError> {
+        if !(metres > T::ZERO && metres.finite()) {
+            return Err(crate::DomainError::MinStep);
+        }
+        Ok(Self { min_step: Some(metres), ..self })
+    }
+
+    /// A reading equal to its sensor's previous one is skipped, all without echo being equal: for rings that repeat a
+    /// held value.
+    pub const fn with_held_dropped(self, drop: bool) -> Self {
+        Self { drop_held: drop, ..self }
+    }
+}
+
+/// What decides who leaves when a reading arrives.
+pub(crate) struct Newcomer {
+    pub sensor: u16,
+    pub t: i64,
+    pub travel: Travel,
+}
+
+/// Which arcs a reported arc is crossed with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scope {
+    /// Those in the local map; departed ones have been blanked out.
+    Present,
+    /// Those in the local map, of a storage that keeps departed ones as well.
+    PresentOfKept,
+    /// Those that it met: each arrived before the other left.
+    Met,
+}
+
+/// The storage, and what has arrived and left so far.
+#[derive(Debug, Clone)]
+pub(crate) struct LocalMap<S> {
+    pub(crate) storage: S,
+    /// Departed readings stay until no arc that met them is present.
+    keeps_departed: bool,
+    /// Number of the next arrival, counted with wrapping.
+    arrivals: u32,
+    /// Number of the oldest arrival that may still be present.
+    oldest: u32,
+    /// Where the next arrival goes in the log.
+    log_head: usize,
+}
+
+impl<S> LocalMap<S> {
+    pub(crate) const fn new(storage: S, keeps_departed: bool) -> Self {
+        Self { storage, keeps_departed, arrivals: 0, oldest: 0, log_head: 0 }
+    }
+
+    /// Puts a reading into its sensor's next slot, and says which.
+    pub(crate) fn enter<T: Scalar>(&mut self, sensor: u16, entry: Entry<T>) -> usize
+    where
+        S: Storage<T>,
+    {
+        let mut columns = self.storage.columns();
+        let depth = columns.depth();
+        if let Some(place) = columns.log.get_mut(self.log_head) {
+            *place = sensor;
+        }
+        self.log_head = if self.log_head + 1 < columns.log.len() { self.log_head + 1 } else { 0 };
+        let mut slot = usize::from(sensor) * depth;
+        if let Some(ring) = columns.rings.get_mut(usize::from(sensor)) {
+            ring.newest = if usize::from(ring.newest) + 1 < depth { ring.newest + 1 } else { 0 };
+            ring.present += 1;
+            ring.kept = if usize::from(ring.kept) < depth { ring.kept + 1 } else { ring.kept };
+            ring.since_oldest += 1;
+            slot += usize::from(ring.newest);
+        }
+        columns.write(slot, &Entry { arrival: self.arrivals, ..entry });
+        self.arrivals = self.arrivals.wrapping_add(1);
+        slot
+    }
+
+    /// The slot of the next reading that has to leave before `newcomer` enters; oldest first.
+    ///
+    /// Rules (b) to (d) depend only on what came after a reading, so whoever they send away is the oldest of all; only
+    /// rule (a), H later readings of its own sensor, can reach past it.
+    pub(crate) fn next_leaver<T: Scalar>(&mut self, newcomer: &Newcomer, bounds: &Bounds<T>) -> Option<usize>
+    where
+        S: Storage<T>,
+    {
+        let history = self.storage.history();
+        let oldest = self.oldest_present();
+        let columns = self.storage.columns();
+        let ring = columns.rings.get(usize::from(newcomer.sensor))?;
+        if let Some((sensor, slot)) = oldest {
+            // The newcomer is its sensor's next reading.
+            let outpaced = sensor != newcomer.sensor && usize::from(ring.since_oldest) + 1 >= 4 * history;
+            let age = newcomer.t.wrapping_sub(columns.time(slot)) as u64;
+            let aged = bounds.max_age.is_some_and(|limit| age > limit);
+            let travel = newcomer.travel.0.wrapping_sub(columns.travelled(slot));
+            let far = bounds.max_travel.is_some_and(|limit| travel > limit.0);
+            if outpaced || aged || far {
+                return Some(slot);
+            }
+        }
+        (usize::from(ring.present) >= history).then(|| front(&columns, newcomer.sensor)).flatten()
+    }
+
+    /// The oldest reading of the local map: its sensor and slot.
+    pub(crate) fn oldest_present<T: Scalar>(&mut self) -> Option<(u16, usize)>
+    where
+        S: Storage<T>,
+    {
+        let columns = self.storage.columns();
+        while self.oldest != self.arrivals {
+            let sensor = logged(&columns, self.log_head, self.arrivals.wrapping_sub(self.oldest))?;
+            if let Some(slot) = front(&columns, sensor)
+                && columns.arrived(slot) == self.oldest
+            {
+                return Some((sensor, slot));
+            }
+            if let Some(ring) = columns.rings.get_mut(usize::from(sensor)) {
+                ring.since_oldest = ring.since_oldest.saturating_sub(1);
+            }
+            self.oldest = self.oldest.wrapping_add(1);
+        }
+        None
+    }
+
+    /// Takes a sensor's oldest reading out of the local map.
+    pub(crate) fn depart<T: Scalar>(&mut self, slot: usize)
+    where
+        S: Storage<T>,
+    {
+        let columns = self.storage.columns();
+        let sensor = slot.checked_div(columns.depth()).unwrap_or(0);
+        if let Some(ring) = columns.rings.get_mut(sensor) {
+            ring.present = ring.present.saturating_sub(1);
+        }
+        if !self.keeps_departed {
+            if let Some(reach) = columns.reach.get_mut(slot) {
+                *reach = T::NAN;
+            }
+            return;
+        }
+        if let Some(departure) = columns.departure.get_mut(slot) {
+            *departure = self.arrivals;
+        }
+        self.forget_unmet();
+    }
+
+    /// Stops keeping what left before the oldest reading of the local map arrived: nothing present has met it.
+    fn forget_unmet<T: Scalar>(&mut self)
+    where
+        S: Storage<T>,
+    {
+        let oldest = self.oldest;
+        let columns = self.storage.columns();
+        let depth = columns.depth();
+        for sensor in 0..columns.rings.len() {
+            while let Some(ring) = columns.rings.get(sensor)
+                && ring.kept > ring.present
+            {
+                let slot = sensor * depth + back(ring.newest, ring.kept - 1, depth);
+                if columns.departed(slot).is_none_or(|departure| is_after(departure, oldest)) {
+                    break;
+                }
+                if let Some(ring) = columns.rings.get_mut(sensor) {
+                    ring.kept -= 1;
+                }
+            }
+        }
+    }
+
+    /// The slot of the `ordinal`-th arrival since the oldest reading, if that one is present.
+    pub(crate) fn present_at<T: Scalar>(&mut self, ordinal: u32) -> Option<usize>
+    where
+        S: Storage<T>,
+    {
+        let arrival = self.oldest.wrapping_add(ordinal);
+        let columns = self.storage.columns();
+        let sensor = logged(&columns, self.log_head, self.arrivals.wrapping_sub(arrival))?;
+        let ring = columns.rings.get(usize::from(sensor))?;
+        let depth = columns.depth();
+        (0..ring.present)
+            .map(|age| usize::from(sensor) * depth + back(ring.newest, age, depth))
+            .find(|&slot| columns.arrived(slot) == arrival)
+    }
+
+    /// Arrivals since the oldest reading of the local map, that one included.
+    pub(crate) const fn span(&self) -> u32 {
+        self.arrivals.wrapping_sub(self.oldest)
+    }
+
+    /// Forgets what departed, when nothing is present.
+    pub(crate) fn forget<T: Scalar>(&mut self)
+    where
+        S: Storage<T>,
+    {
+        for ring in self.storage.columns().rings {
+            ring.kept = 0;
+            ring.last = None;
+        }
+    }
+}
+
+/// The slot of a sensor's oldest reading in the local map.
+fn front<T: Scalar>(columns: &Columns<'_, T>, sensor: u16) -> Option<usize> {
+    let ring = columns.rings.get(usize::from(sensor))?;
+    let age = ring.present.checked_sub(1)?;
+    let depth = columns.depth();
+    Some(usize::from(sensor) * depth + back(ring.newest, age, depth))
+}
+
+/// The place `age` before `newest` in a ring of `depth`.
+fn back(newest: u16, age: u16, depth: usize) -> usize {
+    let (newest, age) = (usize::from(newest), usize::from(age));
+    if newest >= age { newest - age } else { (newest + depth).saturating_sub(age) }
+}
+
+/// The sensor of the arrival that lies `back` before the log's head.
+fn logged<T>(columns: &Columns<'_, T>, head: usize, back: u32) -> Option<u16> {
+    let back = back as usize;
+    let place = if head >= back { head - back } else { (head + columns.log.len()).checked_sub(back)? };
+    columns.log.get(place).copied()
+}
+
+/// Whether one count of arrivals lies after another; both wrap, and are never half the numbers apart.
+const fn is_after(a: u32, b: u32) -> bool {
+    a.wrapping_sub(b).cast_signed() > 0
+}
+
+/// The arcs that a reported arc may cross.
+pub struct Partners<'a, T> {
+    pub(crate) columns: &'a Columns<'a, T>,
+    pub(crate) slot: usize,
+    pub(crate) scope: Scope,
+}
+
+/// Arcs tested at a time, without a branch: a multiple of the width of every vector unit in sight.
+const LANES: usize = 8;
+
+impl<T: Scalar> Partners<'_, T> {
+    /// Visits the partners that may reach `arc`, each with its slot: first a test of their bounding circles in memory
+    /// order, without a branch for each; then, for the few that pass, whether the two have met.
+    #[inline(always)]
+    pub fn for_each_near(&self, arc: &Arc<T>, mut visit: impl FnMut(usize, &Arc<T>)) {
+        let arrival = self.columns.arrived(self.slot);
+        let mut candidate = |slot: usize| {
+            if slot != self.slot && self.meets(slot, arrival) {
+                visit(slot, &self.columns.arc(slot));
+            }
+        };
+        if self.scope == Scope::Present {
+            return self.scan(0, self.columns.middle_x.len(), arc, &mut candidate);
+        }
+        let depth = self.columns.depth();
+        for (sensor, ring) in self.columns.rings.iter().enumerate() {
+            let count = if self.scope == Scope::Met { ring.kept } else { ring.present };
+            let Some(age) = count.checked_sub(1) else { continue };
+            let start = sensor * depth;
+            let (first, newest) = (back(ring.newest, age, depth), usize::from(ring.newest));
+            if first <= newest {
+                self.scan(start + first, start + newest + 1, arc, &mut candidate);
+            } else {
+                self.scan(start + first, start + depth, arc, &mut candidate);
+                self.scan(start, start + newest + 1, arc, &mut candidate);
+            }
+        }
+    }
+
+    fn meets(&self, slot: usize, arrival: u32) -> bool {
+        match self.scope {
+            Scope::Present => true,
+            Scope::PresentOfKept => self.columns.departed(slot).is_none(),
+            Scope::Met => self.columns.departed(slot).is_none_or(|departure| is_after(departure, arrival)),
+        }
+    }
+
+    #[inline(always)]
+    fn scan(&self, from: usize, to: usize, arc: &Arc<T>, candidate: &mut impl FnMut(usize)) {
+        let (Some(xs), Some(ys), Some(reaches)) = (
+            self.columns.middle_x.get(from..to),
+            self.columns.middle_y.get(from..to),
+            self.columns.reach.get(from..to),
+        ) else {
+            return;
+        };
+        let touches = |x: T, y: T, reach: T| {
+            let (x, y, both) = (x - arc.middle.x, y - arc.middle.y, reach + arc.reach);
+            // NaN, a slot without an arc, compares false.
+            x * x + y * y <= both * both
+        };
+        let (x_blocks, x_rest) = xs.as_chunks::<LANES>();
+        let (y_blocks, y_rest) = ys.as_chunks::<LANES>();
+        let (reach_blocks, reach_rest) = reaches.as_chunks::<LANES>();
+        let mut slot = from;
+        for ((x, y), reach) in x_blocks.iter().zip(y_blocks).zip(reach_blocks) {
+            let mut hits = 0u32;
+            for lane in 0..LANES {
+                hits |= u32::from(touches(x[lane], y[lane], reach[lane])) << lane;
+            }
+            while hits != 0 {
+                candidate(slot + hits.trailing_zeros() as usize);
+                hits &= hits - 1;
+            }
+            slot += LANES;
+        }
+        for ((&x, &y), &reach) in x_rest.iter().zip(y_rest).zip(reach_rest) {
+            if touches(x, y, reach) {
+                candidate(slot);
+            }
+            slot += 1;
+        }
+    }
+}
+
+impl<S> LocalMap<S> {
+    pub(crate) fn shift<T: Scalar>(&mut self, by: Vector2<T>)
+    where
+        S: Storage<T>,
+    {
+        self.storage.columns().shift(by);
+    }
+}

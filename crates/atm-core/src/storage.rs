@@ -1,0 +1,361 @@
+//! Where the local map lives: arrays of const size on a microcontroller, anything else on a host.
+
+use nalgebra::{Point2, Vector2};
+
+use crate::{
+    arc::Arc,
+    pose::Travel,
+    scalar::Scalar,
+    sensor::{Beam, RangeResolution},
+};
+
+/// Memory for a local map: columns of slots, `D` of them for each sensor in turn, and a log of who arrived.
+///
+/// Implement it to keep the map elsewhere; the lengths that [`Columns`] asks for are all there is to it.
+/// [`SnapshotStorage`] and [`SettledStorage`] say what more a storage can do.
+pub trait Storage<T: Scalar> {
+    /// H: readings of each sensor in the local map; at least 1.
+    fn history(&self) -> usize;
+
+    /// The columns.
+    fn columns(&mut self) -> Columns<'_, T>;
+
+    /// The columns, and room for the crossings on one arc: two for each slot.
+    fn with_scratch<R>(&mut self, work: impl FnOnce(Columns<'_, T>, &mut [T]) -> R) -> R;
+}
+
+/// A storage whose columns `field_of_view` and `range_resolution` are not empty, so that arcs can be reported after
+/// their arrival.
+pub trait SnapshotStorage<T: Scalar>: Storage<T> {}
+
+/// A storage with 5 H slots for each sensor and the column `departure`, so that an arc can be crossed with every arc it
+/// met when it leaves.
+///
+/// An arc stays for fewer than 4 H readings of any other sensor, and finds at most H of them at its arrival.
+pub trait SettledStorage<T: Scalar>: SnapshotStorage<T> {}
+
+/// How many times H slots a [`SettledStorage`] has for each sensor.
+pub const SETTLED_BLOCKS: usize = 5;
+
+/// How many times H · sensors entries the log of arrivals has: an arc leaves at the 4 H-th reading of another sensor.
+pub const LOG_BLOCKS: usize = 4;
+
+/// A sensor's place in its ring of slots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Ring<T> {
+    /// Slot of the newest reading, from the ring's start.
+    pub(crate) newest: u16,
+    /// Readings in the local map.
+    pub(crate) present: u16,
+    /// Readings that some arc in the local map has met: those present and, in settled storage, some that left.
+    pub(crate) kept: u16,
+    /// Readings since the oldest arc of the local map arrived, that one included.
+    pub(crate) since_oldest: u16,
+    /// The last usable reading: metres, NaN for none without echo.
+    pub(crate) last: Option<T>,
+}
+
+impl<T> Ring<T> {
+    /// A sensor that has not been heard of.
+    pub const EMPTY: Self = Self { newest: 0, present: 0, kept: 0, since_oldest: 0, last: None };
+}
+
+/// The columns of a storage, S sensors · D slots long where nothing else is said.
+///
+/// What the first pass of the pair test reads comes first, each in memory order.
+#[derive(Debug)]
+pub struct Columns<'a, T> {
+    /// The middle of the arc.
+    pub middle_x: &'a mut [T],
+    /// The middle of the arc.
+    pub middle_y: &'a mut [T],
+    /// The arc's reach; NaN where there is no arc to meet.
+    pub reach: &'a mut [T],
+    /// The sensor's position.
+    pub sensor_x: &'a mut [T],
+    /// The sensor's position.
+    pub sensor_y: &'a mut [T],
+    /// The reading; NaN for one without echo.
+    pub radius: &'a mut [T],
+    /// The reading's time.
+    pub t: &'a mut [i64],
+    /// The path travelled until the reading.
+    pub travel: &'a mut [u32],
+    /// The number of the arrival, counted with wrapping.
+    pub arrival: &'a mut [u32],
+    /// The number of the arrival that made it leave; itself while it is present. Empty unless settled.
+    pub departure: &'a mut [u32],
+    /// The beam's full angle. May be empty: then there is no snapshot.
+    pub field_of_view: &'a mut [T],
+    /// The range resolution. Empty where `field_of_view` is.
+    pub range_resolution: &'a mut [T],
+    /// The sensor of each arrival, a ring of 4 H S entries.
+    pub log: &'a mut [u16],
+    /// One for each sensor: S entries.
+    pub rings: &'a mut [Ring<T>],
+}
+
+/// One reading as it enters a slot.
+pub(crate) struct Entry<T: Scalar> {
+    pub sensor_position: Point2<T>,
+    pub arc: Option<Arc<T>>,
+    pub t: i64,
+    pub travel: Travel,
+    pub arrival: u32,
+    pub beam: Beam<T>,
+    pub range_resolution: RangeResolution<T>,
+}
+
+fn put<V>(column: &mut [V], slot: usize, value: V) {
+    if let Some(place) = column.get_mut(slot) {
+        *place = value;
+    }
+}
+
+fn get<V: Copy>(column: &[V], slot: usize, otherwise: V) -> V {
+    column.get(slot).copied().unwrap_or(otherwise)
+}
+
+impl<T: Scalar> Columns<'_, T> {
+    pub(crate) fn write(&mut self, slot: usize, entry: &Entry<T>) {
+        let (middle, radius, reach) = match &entry.arc {
+            Some(arc) => (arc.middle, arc.radius, arc.reach),
+            None => (entry.sensor_position, T::NAN, T::NAN),
+        };
+        put(self.middle_x, slot, middle.x);
+        put(self.middle_y, slot, middle.y);
+        put(self.reach, slot, reach);
+        put(self.sensor_x, slot, entry.sensor_position.x);
+        put(self.sensor_y, slot, entry.sensor_position.y);
+        put(self.radius, slot, radius);
+        put(self.t, slot, entry.t);
+        put(self.travel, slot, entry.travel.0);
+        put(self.arrival, slot, entry.arrival);
+        put(self.departure, slot, entry.arrival);
+        put(self.field_of_view, slot, entry.beam.field_of_view());
+        put(self.range_resolution, slot, entry.range_resolution.metres());
+    }
+
+    /// The slot's arc; NaN throughout where there is none.
+    #[inline(always)]
+    pub(crate) fn arc(&self, slot: usize) -> Arc<T> {
+        let at = |column: &[T]| get(column, slot, T::NAN);
+        Arc {
+            sensor: self.sensor_position(slot),
+            middle: Point2::new(at(self.middle_x), at(self.middle_y)),
+            radius: at(self.radius),
+            reach: at(self.reach),
+        }
+    }
+
+    pub(crate) fn sensor_position(&self, slot: usize) -> Point2<T> {
+        Point2::new(get(self.sensor_x, slot, T::NAN), get(self.sensor_y, slot, T::NAN))
+    }
+
+    pub(crate) fn time(&self, slot: usize) -> i64 {
+        get(self.t, slot, 0)
+    }
+
+    pub(crate) fn travelled(&self, slot: usize) -> u32 {
+        get(self.travel, slot, 0)
+    }
+
+    pub(crate) fn arrived(&self, slot: usize) -> u32 {
+        get(self.arrival, slot, 0)
+    }
+
+    /// The arrival at which the slot's reading left, if it has.
+    pub(crate) fn departed(&self, slot: usize) -> Option<u32> {
+        let departure = get(self.departure, slot, 0);
+        (departure != self.arrived(slot)).then_some(departure)
+    }
+
+    pub(crate) fn shift(&mut self, by: Vector2<T>) {
+        for x in self.middle_x.iter_mut().chain(self.sensor_x.iter_mut()) {
+            *x -= by.x;
+        }
+        for y in self.middle_y.iter_mut().chain(self.sensor_y.iter_mut()) {
+            *y -= by.y;
+        }
+    }
+
+    /// Slots for each sensor.
+    pub(crate) fn depth(&self) -> usize {
+        self.middle_x.len().checked_div(self.rings.len()).unwrap_or(0)
+    }
+}
+
+/// Const storage for the causal mode alone: S sensors, H readings of each.
+///
+/// 40 bytes a slot in `f32` and 8 more of log, besides 12 a sensor: 16 sensors with H = 10 take 7.9 kB. A `static` can
+/// hold it. Echoes of earlier arcs need [`Arrays`].
+#[derive(Debug, Clone)]
+pub struct LatestArrays<T, const S: usize, const H: usize> {
+    middle_x: [[T; H]; S],
+    middle_y: [[T; H]; S],
+    reach: [[T; H]; S],
+    sensor_x: [[T; H]; S],
+    sensor_y: [[T; H]; S],
+    radius: [[T; H]; S],
+    t: [[i64; H]; S],
+    travel: [[u32; H]; S],
+    arrival: [[u32; H]; S],
+    log: [[[u16; H]; LOG_BLOCKS]; S],
+    rings: [Ring<T>; S],
+}
+
+impl<T: Scalar, const S: usize, const H: usize> LatestArrays<T, S, H> {
+    const FITS: () = assert!(S >= 1 && S <= 65_535 && H >= 1 && H <= 10_000, "1 to 65,535 sensors, H from 1 to 10,000");
+
+    /// Empty storage.
+    pub const fn new() -> Self {
+        let () = Self::FITS;
+        Self {
+            middle_x: [[T::NAN; H]; S],
+            middle_y: [[T::NAN; H]; S],
+            reach: [[T::NAN; H]; S],
+            sensor_x: [[T::NAN; H]; S],
+            sensor_y: [[T::NAN; H]; S],
+            radius: [[T::NAN; H]; S],
+            t: [[0; H]; S],
+            travel: [[0; H]; S],
+            arrival: [[0; H]; S],
+            log: [[[0; H]; LOG_BLOCKS]; S],
+            rings: [Ring::EMPTY; S],
+        }
+    }
+}
+
+impl<T: Scalar, const S: usize, const H: usize> Default for LatestArrays<T, S, H> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Scalar, const S: usize, const H: usize> Storage<T> for LatestArrays<T, S, H> {
+    fn history(&self) -> usize {
+        H
+    }
+
+    #[inline]
+    fn columns(&mut self) -> Columns<'_, T> {
+        Columns {
+            middle_x: self.middle_x.as_flattened_mut(),
+            middle_y: self.middle_y.as_flattened_mut(),
+            reach: self.reach.as_flattened_mut(),
+            sensor_x: self.sensor_x.as_flattened_mut(),
+            sensor_y: self.sensor_y.as_flattened_mut(),
+            radius: self.radius.as_flattened_mut(),
+            t: self.t.as_flattened_mut(),
+            travel: self.travel.as_flattened_mut(),
+            arrival: self.arrival.as_flattened_mut(),
+            departure: &mut [],
+            field_of_view: &mut [],
+            range_resolution: &mut [],
+            log: self.log.as_flattened_mut().as_flattened_mut(),
+            rings: &mut self.rings,
+        }
+    }
+
+    fn with_scratch<R>(&mut self, work: impl FnOnce(Columns<'_, T>, &mut [T]) -> R) -> R {
+        // On the stack, where it is needed for one reading at a time: 8 bytes a slot in f32.
+        let mut scratch = [[[T::ZERO; 2]; H]; S];
+        work(self.columns(), scratch.as_flattened_mut().as_flattened_mut())
+    }
+}
+
+/// Const storage for every mode: S sensors, H readings of each, B · H slots a sensor.
+///
+/// B = 1 serves `latest` and snapshots, B = 5 `settled` as well. 52 bytes a slot in `f32` and 8 more of log.
+#[derive(Debug, Clone)]
+pub struct Arrays<T, const S: usize, const H: usize, const B: usize> {
+    middle_x: [[[T; H]; B]; S],
+    middle_y: [[[T; H]; B]; S],
+    reach: [[[T; H]; B]; S],
+    sensor_x: [[[T; H]; B]; S],
+    sensor_y: [[[T; H]; B]; S],
+    radius: [[[T; H]; B]; S],
+    field_of_view: [[[T; H]; B]; S],
+    range_resolution: [[[T; H]; B]; S],
+    t: [[[i64; H]; B]; S],
+    travel: [[[u32; H]; B]; S],
+    arrival: [[[u32; H]; B]; S],
+    departure: [[[u32; H]; B]; S],
+    scratch: [[[[T; 2]; H]; B]; S],
+    log: [[[u16; H]; LOG_BLOCKS]; S],
+    rings: [Ring<T>; S],
+}
+
+impl<T: Scalar, const S: usize, const H: usize, const B: usize> Arrays<T, S, H, B> {
+    const FITS: () = assert!(
+        S >= 1 && S <= 65_535 && H >= 1 && H <= 10_000 && (B == 1 || B == SETTLED_BLOCKS),
+        "1 to 65,535 sensors, H from 1 to 10,000, B = 1 or 5"
+    );
+
+    /// Empty storage.
+    pub const fn new() -> Self {
+        let () = Self::FITS;
+        let blank = [[[T::NAN; H]; B]; S];
+        Self {
+            middle_x: blank,
+            middle_y: blank,
+            reach: blank,
+            sensor_x: blank,
+            sensor_y: blank,
+            radius: blank,
+            field_of_view: blank,
+            range_resolution: blank,
+            t: [[[0; H]; B]; S],
+            travel: [[[0; H]; B]; S],
+            arrival: [[[0; H]; B]; S],
+            departure: [[[0; H]; B]; S],
+            scratch: [[[[T::ZERO; 2]; H]; B]; S],
+            log: [[[0; H]; LOG_BLOCKS]; S],
+            rings: [Ring::EMPTY; S],
+        }
+    }
+
+    fn split(&mut self) -> (Columns<'_, T>, &mut [T]) {
+        let columns = Columns {
+            middle_x: self.middle_x.as_flattened_mut().as_flattened_mut(),
+            middle_y: self.middle_y.as_flattened_mut().as_flattened_mut(),
+            reach: self.reach.as_flattened_mut().as_flattened_mut(),
+            sensor_x: self.sensor_x.as_flattened_mut().as_flattened_mut(),
+            sensor_y: self.sensor_y.as_flattened_mut().as_flattened_mut(),
+            radius: self.radius.as_flattened_mut().as_flattened_mut(),
+            t: self.t.as_flattened_mut().as_flattened_mut(),
+            travel: self.travel.as_flattened_mut().as_flattened_mut(),
+            arrival: self.arrival.as_flattened_mut().as_flattened_mut(),
+            departure: self.departure.as_flattened_mut().as_flattened_mut(),
+            field_of_view: self.field_of_view.as_flattened_mut().as_flattened_mut(),
+            range_resolution: self.range_resolution.as_flattened_mut().as_flattened_mut(),
+            log: self.log.as_flattened_mut().as_flattened_mut(),
+            rings: &mut self.rings,
+        };
+        (columns, self.scratch.as_flattened_mut().as_flattened_mut().as_flattened_mut())
+    }
+}
+
+impl<T: Scalar, const S: usize, const H: usize, const B: usize> Default for Arrays<T, S, H, B> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Scalar, const S: usize, const H: usize, const B: usize> Storage<T> for Arrays<T, S, H, B> {
+    fn history(&self) -> usize {
+        H
+    }
+
+    fn columns(&mut self) -> Columns<'_, T> {
+        self.split().0
+    }
+
+    fn with_scratch<R>(&mut self, work: impl FnOnce(Columns<'_, T>, &mut [T]) -> R) -> R {
+        let (columns, scratch) = self.split();
+        work(columns, scratch)
+    }
+}
+
+impl<T: Scalar, const S: usize, const H: usize, const B: usize> SnapshotStorage<T> for Arrays<T, S, H, B> {}
+impl<T: Scalar, const S: usize, const H: usize> SettledStorage<T> for Arrays<T, S, H, SETTLED_BLOCKS> {}

@@ -1,0 +1,106 @@
+//! What can go wrong with a file, and where in it.
+use std::{fmt, io, sync::Arc};
+
+use thiserror::Error;
+
+/// A place in a file: its name, the line, and the byte at which the record begins.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file as the user named it; `-` is shown as `standard input`.
+    pub file: Arc<str>,
+    /// Line, from 1; 0 where lines mean nothing.
+    pub line: u64,
+    /// Offset of the record's first byte, from 0.
+    pub byte: u64,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.file, self.line)
+    }
+}
+
+/// Why one record of a log can't be used. The record is skipped and counted; the run goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum Reason {
+    /// A cell that should hold a number does not, or the number does not fit.
+    BadNumber,
+    /// A pose that is not finite.
+    BadPose,
+    /// The record ends before a column that is needed.
+    MissingField,
+    /// The rig has no sensor of this id.
+    UnknownSensor,
+    /// No pose within the gap on both sides of the reading.
+    NoPose,
+    /// Earlier than the latest usable record.
+    TimeBackwards,
+    /// A record longer than [`crate::log::table::MAX_RECORD`] bytes.
+    TooLong,
+}
+
+impl Reason {
+    /// The key under which the reason is counted in a summary.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::BadNumber => "bad_number",
+            Self::BadPose => "bad_pose",
+            Self::MissingField => "missing_field",
+            Self::UnknownSensor => "unknown_sensor",
+            Self::NoPose => "no_pose",
+            Self::TimeBackwards => "time_backwards",
+            Self::TooLong => "too_long",
+        }
+    }
+}
+
+/// One unusable record: why, where, and what stood there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// Why it can't be used.
+    pub reason: Reason,
+    /// Where it begins.
+    pub place: Place,
+    /// The offending value as it stands in the file (shortened), with its column where there is one.
+    pub value: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}: {}", self.place, self.reason.key(), self.value)
+    }
+}
+
+/// Why a run can't go on.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system's word on a file.
+    #[error("{file}: {source}")]
+    Io {
+        /// The file.
+        file: Arc<str>,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file that is not what it has to be: encoding, header, columns.
+    #[error("{place}: {message}")]
+    Format {
+        /// Where.
+        place: Place,
+        /// What is wrong, and what was expected.
+        message: String,
+    },
+    /// A rig that can't be used.
+    #[error("{file}: {message}")]
+    Rig {
+        /// The rig's file or name, with line where known.
+        file: Arc<str>,
+        /// The key, its value, and what was expected.
+        message: String,
+    },
+}
+
+/// Shorthand for this library.
+pub type Result<T, E = Error> = std::result::Result<T, E>;

@@ -1,0 +1,2 @@
+//! Worlds to make readings in.
+pub mod rough;
