@@ -100,6 +100,18 @@ pub enum Error {
         /// The key, its value, and what was expected.
         message: String,
     },
+    /// Settings that contradict each other or ask for too much.
+    #[error("{message}")]
+    Settings {
+        /// What is wrong.
+        message: String,
+    },
+    /// The first unusable record, where that is to end the run.
+    #[error("{problem}")]
+    Strict {
+        /// The record.
+        problem: Problem,
+    },
 }
 
 /// Shorthand for this library.

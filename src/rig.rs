@@ -1,1 +1,314 @@
-//! rig
+//! The sensors of a robot: where they sit, what they see, and how its logs are written.
+//!
+//! A rig comes from TOML ([`Rig::load`]), from the built-in ones ([`Rig::builtin`]), or from code ([`Rig::ring`], [`Rig::new`]).
+//! Whichever way, its invariants hold from then on: nothing behind a getter has to be checked again.
+mod document;
+mod format;
+mod read;
+
+use std::{
+    collections::HashMap,
+    f64::consts::{PI, TAU},
+    fs,
+    io::{self, Read},
+    path::Path,
+};
+
+use nalgebra::{Isometry2, Translation2, UnitComplex};
+
+pub use self::format::{LogFormats, TableFormat};
+use crate::error::{Error, Result};
+
+/// Most sensors of a rig: their indices are 16 bits wide, and the count is, too.
+pub const MAX_SENSORS: usize = u16::MAX as usize;
+/// Largest rig file that is read, in bytes.
+pub const MAX_FILE: u64 = 16 * 1024 * 1024;
+
+/// What a sensor sees: its beam and the ranges it measures. Checked where a [`Sensor`] is made of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ranging {
+    /// Full beam angle, in radians, within (0, π]; `None` where the log or the command line has to say it.
+    pub field_of_view: Option<f64>,
+    /// Smallest range that is an echo, in metres, at least 0 and below `max_range`.
+    pub min_range: f64,
+    /// A reading at this range or beyond is no echo, in metres; +∞ without such a bound.
+    pub max_range: f64,
+    /// Step in which the sensor quantises ranges, in metres, above 0; `None` where it is not known.
+    pub range_resolution: Option<f64>,
+}
+
+impl Default for Ranging {
+    /// Unknown beam and step, every range from 0 on.
+    fn default() -> Self {
+        Self { field_of_view: None, min_range: 0.0, max_range: f64::INFINITY, range_resolution: None }
+    }
+}
+
+/// A value out of its domain, by the key it has in a rig file.
+struct Invalid {
+    key: &'static str,
+    message: &'static str,
+}
+
+impl Ranging {
+    /// The first value out of its domain, if there is one. NaN is out of all of them.
+    fn check(&self) -> Result<(), Invalid> {
+        let invalid = |key, message| Err(Invalid { key, message });
+        if self.field_of_view.is_some_and(|angle| !(angle > 0.0 && angle <= PI)) {
+            return invalid("field_of_view", "must be above 0deg and at most 180deg");
+        }
+        if !(self.min_range >= 0.0 && self.min_range.is_finite()) {
+            return invalid("min_range", "must be finite and not negative");
+        }
+        if self.max_range.is_nan() || self.max_range <= 0.0 {
+            return invalid("max_range", "must be above zero");
+        }
+        if self.min_range >= self.max_range {
+            return invalid("min_range", "must be less than max_range");
+        }
+        if self.range_resolution.is_some_and(|step| !(step > 0.0 && step.is_finite())) {
+            return invalid("range_resolution", "must be finite and above zero");
+        }
+        Ok(())
+    }
+}
+
+/// One range sensor on the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensor {
+    id: String,
+    mount: Isometry2<f64>,
+    ranging: Ranging,
+    topic: Option<String>,
+}
+
+impl Sensor {
+    /// A sensor by its id in logs, its pose in the robot frame (metres; boresight along its x axis) and what it sees.
+    ///
+    /// Errors: an empty id, a mount that is not finite, a value of `ranging` out of its domain.
+    pub fn new(id: impl Into<String>, mount: Isometry2<f64>, ranging: Ranging) -> Result<Self> {
+        let id = id.into();
+        let refuse = |message: String| Err(rig_error(&format!("sensor `{id}`"), message));
+        if id.is_empty() {
+            return refuse("the id must not be empty".to_owned());
+        }
+        let (position, boresight) = (mount.translation.vector, mount.rotation);
+        if ![position.x, position.y, boresight.re, boresight.im].iter().all(|part| part.is_finite()) {
+            return refuse("the mount must be finite".to_owned());
+        }
+        match ranging.check() {
+            Ok(()) => Ok(Self { id, mount, ranging, topic: None }),
+            Err(Invalid { key, message }) => refuse(format!("{key} {message}")),
+        }
+    }
+
+    /// The same sensor, found in logs under a topic or frame id.
+    pub fn with_topic(self, topic: impl Into<String>) -> Self {
+        Self { topic: Some(topic.into()), ..self }
+    }
+
+    /// The id by which logs and outputs name the sensor; never empty.
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// Pose in the robot frame, in metres; the boresight is its x axis.
+    pub fn mount(&self) -> Isometry2<f64> {
+        self.mount
+    }
+
+    /// Beam and ranges.
+    pub fn ranging(&self) -> Ranging {
+        self.ranging
+    }
+
+    /// Full beam angle, in radians, within (0, π]; `None` where the rig does not say it.
+    pub fn field_of_view(&self) -> Option<f64> {
+        self.ranging.field_of_view
+    }
+
+    /// Smallest range that is an echo, in metres; at least 0.
+    pub fn min_range(&self) -> f64 {
+        self.ranging.min_range
+    }
+
+    /// Range from which on a reading is no echo, in metres, above [`Self::min_range`]; may be +∞.
+    pub fn max_range(&self) -> f64 {
+        self.ranging.max_range
+    }
+
+    /// Step of the ranges, in metres, above 0; `None` where the rig does not say it.
+    pub fn range_resolution(&self) -> Option<f64> {
+        self.ranging.range_resolution
+    }
+
+    /// Log topic or frame id of the sensor, where it is not its id.
+    pub fn topic(&self) -> Option<&str> {
+        self.topic.as_deref()
+    }
+}
+
+/// All range sensors of a robot: 1 to [`MAX_SENSORS`] of them, each with an id of its own.
+#[derive(Debug, Clone)]
+pub struct Rig {
+    name: String,
+    sensors: Vec<Sensor>,
+    log: Option<LogFormats>,
+    by_id: HashMap<String, u16>,
+}
+
+impl Rig {
+    /// Names of the built-in rigs.
+    pub const BUILTIN: [&str; 2] = ["nomad200", "robond8"];
+
+    /// A rig of the given sensors, whose indices are their places in the list.
+    ///
+    /// Errors: no sensors, more than [`MAX_SENSORS`], or two with one id.
+    pub fn new(name: impl Into<String>, sensors: Vec<Sensor>) -> Result<Self> {
+        let name = name.into();
+        if sensors.is_empty() || sensors.len() > MAX_SENSORS {
+            return Err(rig_error(&name, format!("{} sensors: must be 1 to {MAX_SENSORS}", sensors.len())));
+        }
+        let mut by_id = HashMap::with_capacity(sensors.len());
+        for (index, sensor) in (0..=u16::MAX).zip(&sensors) {
+            if by_id.insert(sensor.id.clone(), index).is_some() {
+                return Err(rig_error(&name, format!("two sensors have the id `{}`", sensor.id)));
+            }
+        }
+        Ok(Self { name, sensors, log: None, by_id })
+    }
+
+    /// A rig named `ring`: sensors evenly on a circle of `radius` metres, looking outwards.
+    ///
+    /// Sensor i has the id of its number and sits at yaw `first_yaw` (radians) + i·2π/count, so they go counter-clockwise.
+    ///
+    /// Errors: a count outside 1 to [`MAX_SENSORS`], a radius that is negative or not finite, a yaw that is not finite, a
+    /// value of `ranging` out of its domain.
+    pub fn ring(count: usize, radius: f64, first_yaw: f64, ranging: Ranging) -> Result<Self> {
+        const NAME: &str = "ring";
+        match ring_sensors(count, radius, first_yaw, ranging) {
+            Ok(sensors) => Self::new(NAME, sensors),
+            Err(Invalid { key, message }) => Err(rig_error(NAME, format!("{key} {message}"))),
+        }
+    }
+
+    /// A built-in rig; `None` where the name is not in [`Rig::BUILTIN`].
+    pub fn builtin(name: &str) -> Option<Self> {
+        let text = match name {
+            "nomad200" => include_str!("../rig/nomad200.toml"),
+            "robond8" => include_str!("../rig/robond8.toml"),
+            _ => return None,
+        };
+        Self::parse(text, name).ok()
+    }
+
+    /// The built-in rig of this name, else the rig in this file (`./nomad200` is always a file).
+    ///
+    /// Errors: what the system says of the file, and what [`Rig::parse`] says of its content; a file above [`MAX_FILE`], a
+    /// directory, text that is not UTF-8.
+    pub fn load(name_or_path: &str) -> Result<Self> {
+        match Self::builtin(name_or_path) {
+            Some(rig) => Ok(rig),
+            None => Self::parse(&read_file(name_or_path)?, name_or_path),
+        }
+    }
+
+    /// The rig a TOML text describes; `file` is what errors call it, and its stem the name of a rig that has none.
+    ///
+    /// Errors name file, line and key: no TOML, an unknown key, a value of another kind or out of its domain, both a ring
+    /// and single sensors or neither, two sensors with one id.
+    pub fn parse(text: &str, file: &str) -> Result<Self> {
+        read::rig(text, file)
+    }
+
+    /// The same rig under another name.
+    pub fn with_name(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
+    /// The same rig, with how its logs are written.
+    pub fn with_log(self, log: LogFormats) -> Self {
+        Self { log: Some(log), ..self }
+    }
+
+    /// The rig's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The sensors, in the order of their indices; at least one.
+    pub fn sensors(&self) -> &[Sensor] {
+        &self.sensors
+    }
+
+    /// How a foreign table of this robot is written; `None` where it is not foreign.
+    pub fn log(&self) -> Option<&LogFormats> {
+        self.log.as_ref()
+    }
+
+    /// Index in [`Rig::sensors`] of the sensor with this id, in constant time.
+    pub fn index_of(&self, id: &str) -> Option<u16> {
+        self.by_id.get(id).copied()
+    }
+}
+
+/// The sensors of [`Rig::ring`].
+fn ring_sensors(count: usize, radius: f64, first_yaw: f64, ranging: Ranging) -> Result<Vec<Sensor>, Invalid> {
+    let invalid = |key, message| Err(Invalid { key, message });
+    if !(1..=MAX_SENSORS).contains(&count) {
+        return invalid("count", "must be 1 to 65535");
+    }
+    if !(radius >= 0.0 && radius.is_finite()) {
+        return invalid("radius", "must be finite and not negative");
+    }
+    if !first_yaw.is_finite() {
+        return invalid("first_yaw", "must be finite");
+    }
+    ranging.check()?;
+    let sensor = |i: usize| {
+        let boresight = direction(first_yaw + i as f64 * TAU / count as f64);
+        let position = Translation2::new(radius * boresight.re, radius * boresight.im);
+        Sensor { id: i.to_string(), mount: Isometry2::from_parts(position, boresight), ranging, topic: None }
+    };
+    Ok((0..count).map(sensor).collect())
+}
+
+/// The unit vector at an angle in radians: through libm, as the system's sine differs from machine to machine.
+fn direction(yaw: f64) -> UnitComplex<f64> {
+    UnitComplex::from_cos_sin_unchecked(libm::cos(yaw), libm::sin(yaw))
+}
+
+fn rig_error(file: &str, message: String) -> Error {
+    Error::Rig { file: file.into(), message }
+}
+
+/// Reads a rig file, of bounded size even where the system can't tell it (a pipe, a device).
+fn read_file(file: &str) -> Result<String> {
+    let io_error = |source| Error::Io { file: file.into(), source };
+    if Path::new(file).is_dir() {
+        return Err(rig_error(file, "is a directory, not a rig file".to_owned()));
+    }
+    let source = fs::File::open(file).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => io_error(not_found()),
+        _ => io_error(error),
+    })?;
+    let mut bytes = Vec::new();
+    source.take(MAX_FILE + 1).read_to_end(&mut bytes).map_err(io_error)?;
+    if bytes.len() as u64 > MAX_FILE {
+        return Err(rig_error(file, format!("larger than {} MiB: no rig file", MAX_FILE >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = document::line_of(error.as_bytes(), valid);
+        rig_error(&format!("{file}:{line}"), format!("not UTF-8 text (byte {valid})"))
+    })
+}
+
+/// What to say of a name that is neither a built-in rig nor a file.
+fn not_found() -> io::Error {
+    let message = format!("no such rig file, and no built-in rig of this name ({})", Rig::BUILTIN.join(", "));
+    io::Error::new(io::ErrorKind::NotFound, message)
+}
+
+#[cfg(test)]
+mod tests;

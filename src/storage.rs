@@ -7,11 +7,18 @@ use thiserror::Error;
 #[derive(Debug, Clone)]
 pub struct Slots<T, const B: usize> {
     history: usize,
-    /// The columns of numbers, one after the other in the order of [`Slots::columns`].
-    numbers: Vec<T>,
+    middle_x: Vec<T>,
+    middle_y: Vec<T>,
+    reach: Vec<T>,
+    sensor_x: Vec<T>,
+    sensor_y: Vec<T>,
+    radius: Vec<T>,
+    field_of_view: Vec<T>,
+    range_resolution: Vec<T>,
     t: Vec<i64>,
-    /// Travel, arrival, departure.
-    counts: Vec<u32>,
+    travel: Vec<u32>,
+    arrival: Vec<u32>,
+    departure: Vec<u32>,
     log: Vec<u16>,
     rings: Vec<Ring<T>>,
     scratch: Vec<T>,
@@ -23,21 +30,18 @@ pub type LatestSlots<T> = Slots<T, 1>;
 /// Enough for `settled` as well.
 pub type SettledSlots<T> = Slots<T, SETTLED_BLOCKS>;
 
-/// Columns of numbers, of eight different meanings.
-const NUMBERS: usize = 8;
-
 /// A local map that can't be had.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum StorageError {
     /// H out of range.
-    #[error("the history must be 1 to {} readings of each sensor, not {0}", Slots::<f64, 1>::MAX_HISTORY)]
+    #[error("the history must be 1 to {most} readings of each sensor, not {0}", most = Slots::<f64, 1>::MAX_HISTORY)]
     History(usize),
     /// Number of sensors out of range.
     #[error("there must be 1 to 65535 sensors, not {0}")]
     Sensors(usize),
     /// More slots than are allowed.
-    #[error("{sensors} sensors with a history of {history} need more slots than {}", Slots::<f64, 1>::MAX_SLOTS)]
+    #[error("{sensors} sensors with a history of {history} need more than {most} slots", most = Slots::<f64, 1>::MAX_SLOTS)]
     TooLarge {
         /// Sensors asked for.
         sensors: usize,
@@ -67,41 +71,42 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
         if slots > Self::MAX_SLOTS {
             return Err(StorageError::TooLarge { sensors, history });
         }
+        let blank = vec![T::NAN; slots];
         Ok(Self {
             history,
-            numbers: vec![T::NAN; NUMBERS * slots],
+            middle_x: blank.clone(),
+            middle_y: blank.clone(),
+            reach: blank.clone(),
+            sensor_x: blank.clone(),
+            sensor_y: blank.clone(),
+            radius: blank.clone(),
+            field_of_view: blank.clone(),
+            range_resolution: blank,
             t: vec![0; slots],
-            counts: vec![0; 3 * slots],
+            travel: vec![0; slots],
+            arrival: vec![0; slots],
+            departure: vec![0; slots],
             log: vec![0; LOG_BLOCKS * sensors * history],
             rings: vec![Ring::EMPTY; sensors],
             scratch: vec![T::ZERO; 2 * slots],
         })
     }
 
+    #[inline]
     fn split(&mut self) -> (Columns<'_, T>, &mut [T]) {
-        let slots = self.t.len();
-        let (middle_x, rest) = self.numbers.split_at_mut(slots);
-        let (middle_y, rest) = rest.split_at_mut(slots);
-        let (reach, rest) = rest.split_at_mut(slots);
-        let (sensor_x, rest) = rest.split_at_mut(slots);
-        let (sensor_y, rest) = rest.split_at_mut(slots);
-        let (radius, rest) = rest.split_at_mut(slots);
-        let (field_of_view, range_resolution) = rest.split_at_mut(slots);
-        let (travel, rest) = self.counts.split_at_mut(slots);
-        let (arrival, departure) = rest.split_at_mut(slots);
         let columns = Columns {
-            middle_x,
-            middle_y,
-            reach,
-            sensor_x,
-            sensor_y,
-            radius,
+            middle_x: &mut self.middle_x,
+            middle_y: &mut self.middle_y,
+            reach: &mut self.reach,
+            sensor_x: &mut self.sensor_x,
+            sensor_y: &mut self.sensor_y,
+            radius: &mut self.radius,
             t: &mut self.t,
-            travel,
-            arrival,
-            departure,
-            field_of_view,
-            range_resolution,
+            travel: &mut self.travel,
+            arrival: &mut self.arrival,
+            departure: &mut self.departure,
+            field_of_view: &mut self.field_of_view,
+            range_resolution: &mut self.range_resolution,
             log: &mut self.log,
             rings: &mut self.rings,
         };

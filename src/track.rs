@@ -1,1 +1,207 @@
-//! track
+//! Where the robot was: poses as a stream, merged with readings in time order.
+use std::f64::consts::TAU;
+
+use crate::error::{Place, Problem, Reason, Result};
+
+/// Records in a row, earlier than the latest usable one but in order among themselves, that make a clock reset.
+pub const RESET_RUN: u32 = 16;
+
+/// The robot's pose in the log's fixed frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Position in metres.
+    pub x: f64,
+    /// Position in metres.
+    pub y: f64,
+    /// Heading in radians, counter-clockwise; any turn.
+    pub yaw: f64,
+}
+
+/// What a [`Clock`] says of a record's time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tick {
+    /// Not earlier than the latest usable record: usable.
+    Forward,
+    /// Earlier: unusable.
+    Backward,
+    /// The last of [`RESET_RUN`] earlier ones: unusable too, but time goes on from here.
+    Reset,
+}
+
+/// The order of time in a log.
+///
+/// A record earlier than the latest usable one is unusable. [`RESET_RUN`] such records in a row, each not earlier than the one before,
+/// are a clock reset. A usable record in between ends the run; one out of order within the run begins it anew.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Clock {
+    now: Option<i64>,
+    /// The latest of the run of earlier records, and how many they are.
+    run_last: i64,
+    run: u32,
+}
+
+impl Clock {
+    /// A clock that takes any first record.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Time of the latest usable record, or of the last reset, in nanoseconds.
+    pub fn now(&self) -> Option<i64> {
+        self.now
+    }
+
+    /// Whether a record of this time, in nanoseconds, would be [`Tick::Forward`].
+    pub fn is_forward(&self, t: i64) -> bool {
+        self.now.is_none_or(|now| t >= now)
+    }
+
+    /// Takes the time of the next record, in nanoseconds.
+    pub fn admit(&mut self, t: i64) -> Tick {
+        if self.is_forward(t) {
+            self.now = Some(t);
+            self.run = 0;
+            return Tick::Forward;
+        }
+        self.run = if self.run > 0 && t >= self.run_last { self.run + 1 } else { 1 };
+        self.run_last = t;
+        if self.run < RESET_RUN {
+            return Tick::Backward;
+        }
+        self.now = Some(t);
+        self.run = 0;
+        Tick::Reset
+    }
+}
+
+/// A pose, its time in nanoseconds, and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StampedPose {
+    /// Nanoseconds.
+    pub t: i64,
+    /// Finite.
+    pub pose: Pose,
+    /// Where its record begins.
+    pub place: Place,
+}
+
+/// Poses in the order of their file.
+pub trait PoseStream {
+    /// The next pose that can be read, `None` at the end; those that can't go to `problems`. Errors where the file can't be read on.
+    fn next_pose(&mut self, problems: &mut dyn FnMut(Problem)) -> Result<Option<StampedPose>>;
+}
+
+impl<P: PoseStream + ?Sized> PoseStream for Box<P> {
+    fn next_pose(&mut self, problems: &mut dyn FnMut(Problem)) -> Result<Option<StampedPose>> {
+        (**self).next_pose(problems)
+    }
+}
+
+/// One pose with the number of clock resets before it.
+#[derive(Debug, Clone, Copy)]
+struct Waypoint {
+    epoch: u32,
+    t: i64,
+    pose: Pose,
+}
+
+/// A trajectory that is asked for poses in time order, and read only as far as needed.
+pub struct Track<P> {
+    stream: P,
+    max_gap: u64,
+    clock: Clock,
+    epoch: u32,
+    /// The latest pose before the last time asked for, and the one after it.
+    before: Option<Waypoint>,
+    ahead: Option<Waypoint>,
+    ended: bool,
+}
+
+impl<P: PoseStream> Track<P> {
+    /// A track over `stream` that answers only where there are poses within `max_gap` nanoseconds on both sides.
+    pub fn new(stream: P, max_gap: u64) -> Self {
+        Self { stream, max_gap, clock: Clock::new(), epoch: 0, before: None, ahead: None, ended: false }
+    }
+
+    /// Clock resets in the poses read so far.
+    pub fn resets(&self) -> u32 {
+        self.epoch
+    }
+
+    /// The pose at `t`, in nanoseconds, after `epoch` clock resets; the n-th epoch of the readings is that of the poses.
+    ///
+    /// Position is interpolated linearly, yaw the shorter way. `None` where there is no pose within the gap at or before `t` or none at
+    /// or after it. Times must not go back within an epoch, nor epochs. Unusable poses that were passed go to `problems`; errors where the
+    /// stream has one.
+    pub fn pose_at(&mut self, epoch: u32, t: i64, problems: &mut dyn FnMut(Problem)) -> Result<Option<Pose>> {
+        while !self.ended {
+            match self.ahead {
+                Some(ahead) if (ahead.epoch, ahead.t) >= (epoch, t) => break,
+                Some(passed) => self.before = Some(passed),
+                None => {}
+            }
+            self.ahead = self.next_waypoint(problems)?;
+            self.ended = self.ahead.is_none();
+        }
+        Ok(self.interpolate(epoch, t))
+    }
+
+    fn interpolate(&self, epoch: u32, t: i64) -> Option<Pose> {
+        let ahead = self.ahead.filter(|ahead| ahead.epoch == epoch && ahead.t >= t)?;
+        if ahead.t == t {
+            return Some(ahead.pose);
+        }
+        let before = self.before.filter(|before| before.epoch == epoch && before.t <= t)?;
+        let (since, until) = (t.abs_diff(before.t), ahead.t.abs_diff(t));
+        if since > self.max_gap || until > self.max_gap {
+            return None;
+        }
+        let share = since as f64 / ahead.t.abs_diff(before.t) as f64;
+        before.pose.towards(ahead.pose, share)
+    }
+
+    /// The next pose in time order.
+    fn next_waypoint(&mut self, problems: &mut dyn FnMut(Problem)) -> Result<Option<Waypoint>> {
+        while let Some(StampedPose { t, pose, place }) = self.stream.next_pose(problems)? {
+            let latest = self.clock.now();
+            match self.clock.admit(t) {
+                Tick::Forward => return Ok(Some(Waypoint { epoch: self.epoch, t, pose })),
+                Tick::Backward => {}
+                Tick::Reset => self.epoch = self.epoch.saturating_add(1),
+            }
+            problems(time_backwards(t, latest, place));
+        }
+        Ok(None)
+    }
+}
+
+/// The problem of a record that is earlier than the latest usable one; times in nanoseconds.
+pub fn time_backwards(t: i64, latest: Option<i64>, place: Place) -> Problem {
+    let seconds = |t| {
+        let mut text = Vec::new();
+        crate::stamp::write(t, &mut text);
+        String::from_utf8_lossy(&text).into_owned()
+    };
+    let value = match latest {
+        Some(latest) => format!("t {} after {}", seconds(t), seconds(latest)),
+        None => format!("t {}", seconds(t)),
+    };
+    Problem { reason: Reason::TimeBackwards, place, value }
+}
+
+impl Pose {
+    /// The pose this share of the way to another, `share` in [0, 1]; `None` where the poses are too far apart for an `f64`.
+    fn towards(self, other: Self, share: f64) -> Option<Self> {
+        // The remainder is exact, and within ±half a turn: the shorter way.
+        let turn = libm::remainder(other.yaw - self.yaw, TAU);
+        let pose = Self {
+            x: self.x + share * (other.x - self.x),
+            y: self.y + share * (other.y - self.y),
+            yaw: self.yaw + share * turn,
+        };
+        (pose.x.is_finite() && pose.y.is_finite() && pose.yaw.is_finite()).then_some(pose)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,100 @@
 //! Logs in and out, one file a format.
+mod buffer;
+mod cell;
+mod columns;
 pub mod csv;
+pub mod echoes;
+pub mod format;
 pub mod output;
 pub mod poses;
 pub mod table;
+
+use std::{fs, io, sync::Arc};
+
+use crate::{
+    error::{Error, Place, Problem, Result},
+    track::Pose,
+};
+
+/// What a log, asked for one record, has to say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Next {
+    /// The next record was read.
+    Record,
+    /// The next record can't be used: its problem was reported, and the log can be asked on.
+    Unusable,
+    /// There are no more records.
+    End,
+}
+
+/// One record of a log: the readings of one instant, and where the robot was. Reused from record to record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Time in nanoseconds.
+    pub t: i64,
+    /// Pose in the log's fixed frame; `None` where the poses aren't taken from this log.
+    pub pose: Option<Pose>,
+    /// Sensor index and range in metres, in the order of the log. NaN and ±Inf are readings without an echo.
+    pub readings: Vec<(u16, f64)>,
+    /// Empty cells that were skipped: sensors that did not fire.
+    pub empty: u64,
+    /// Where the record begins.
+    pub place: Place,
+}
+
+impl Default for Row {
+    fn default() -> Self {
+        let place = Place { file: Arc::from(""), line: 0, byte: 0 };
+        Self { t: 0, pose: None, readings: Vec::new(), empty: 0, place }
+    }
+}
+
+/// A log of readings, as a stream of [`Row`]s.
+pub trait Source {
+    /// Reads one record into `row`, whose earlier contents are gone whatever is returned; problems go to `problems`.
+    ///
+    /// Returns after every record, usable or not, so that a caller can flush its output before the log has to wait for more.
+    /// A [`Next::Record`] may come with problems of single cells, and without any reading. Errors where the log can't be read on.
+    fn next_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Next>;
+
+    /// Whether the next record has to be waited for: nothing of what was read from the file so far holds a complete one.
+    fn drained(&self) -> bool;
+
+    /// Bytes of the file used so far.
+    fn position(&self) -> u64;
+
+    /// Whether the rows carry poses.
+    fn has_poses(&self) -> bool;
+}
+
+/// A file (or standard input) that was opened for reading.
+pub struct Input {
+    /// Its bytes.
+    pub reader: Box<dyn io::Read>,
+    /// Its name in messages.
+    pub name: Arc<str>,
+    /// Its length in bytes, where that is known beforehand.
+    pub length: Option<u64>,
+}
+
+impl Input {
+    /// Opens the file at `path`; `-` is standard input. Errors where there is none, it may not be read, or it is a directory.
+    pub fn open(path: &str) -> Result<Self> {
+        if path == "-" {
+            let name = Arc::from("standard input");
+            return Ok(Self { reader: Box::new(io::stdin()), name, length: None });
+        }
+        let name: Arc<str> = Arc::from(path);
+        let failed = |source| Error::Io { file: name.clone(), source };
+        let file = fs::File::open(path).map_err(failed)?;
+        let metadata = file.metadata().map_err(failed)?;
+        if metadata.is_dir() {
+            return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "is a directory, not a file")));
+        }
+        let length = metadata.is_file().then_some(metadata.len());
+        Ok(Self { reader: Box::new(file), name, length })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,1 +1,366 @@
-//! table
+//! Text tables as a stream of records, in bounded memory.
+//!
+//! Quotes are read as `csv-core` reads them; comments and blank lines are passed over here, so that each record's line
+//! and byte are those it really begins at.
+use std::{io::Read, sync::Arc};
+
+use csv_core::{ReadRecordResult, ReaderBuilder};
+use memchr::{memchr, memchr_iter, memchr2};
+
+use super::{Next, buffer::Buffer};
+use crate::error::{Error, Place, Problem, Reason, Result};
+
+/// Longest record that is read, in bytes, its line end aside.
+pub const MAX_RECORD: usize = 1 << 20;
+/// Most fields a record may have.
+pub const MAX_FIELDS: usize = 131_072;
+
+/// Bytes that tell the encoding.
+const MARK: usize = 4;
+/// Delimiters that are looked for in a header.
+const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
+
+/// One record: its fields, trimmed of ASCII blanks.
+#[derive(Debug, Clone, Copy)]
+pub struct Record<'a> {
+    bytes: &'a [u8],
+    ends: &'a [usize],
+}
+
+impl<'a> Record<'a> {
+    /// Number of fields; 0 only before the first record.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether no record was read yet.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The field of this index, from 0.
+    #[inline]
+    pub fn get(&self, index: usize) -> Option<&'a [u8]> {
+        let end = *self.ends.get(index)?;
+        let start = match index.checked_sub(1) {
+            Some(before) => *self.ends.get(before)?,
+            None => 0,
+        };
+        Some(self.bytes.get(start..end)?.trim_ascii())
+    }
+
+    /// The fields in order.
+    pub fn fields(&self) -> impl Iterator<Item = &'a [u8]> {
+        (0..self.len()).filter_map(|index| self.get(index))
+    }
+}
+
+/// How the reading of one record ended.
+enum Outcome {
+    Complete,
+    TooLong,
+}
+
+/// A table that is read record by record. Its memory is bounded by [`MAX_RECORD`] and [`MAX_FIELDS`].
+pub struct Table {
+    buffer: Buffer,
+    /// Line of the next unused byte, from 1.
+    line: u64,
+    /// The last byte used was a carriage return that ended a line: a newline right after belongs to it.
+    after_return: bool,
+    /// The delimiter is a run of blanks.
+    blanks: bool,
+    parser: csv_core::Reader,
+    /// The last record: its fields one after the other, and where each ends.
+    fields: Vec<u8>,
+    ends: Vec<usize>,
+    field_count: usize,
+    record_line: u64,
+    record_byte: u64,
+}
+
+impl Table {
+    /// A table over `reader`, whose name in messages is `name`; comma-separated until [`Table::set_delimiter`] says otherwise.
+    ///
+    /// Reads the first bytes. A byte-order mark is passed over. Errors where nothing can be read, where the file is empty, and
+    /// where it is UTF-16.
+    pub fn new(reader: Box<dyn Read>, name: Arc<str>) -> Result<Self> {
+        let mut table = Self {
+            buffer: Buffer::new(reader, name),
+            line: 1,
+            after_return: false,
+            blanks: false,
+            parser: parser(b','),
+            fields: vec![0; 1024],
+            ends: vec![0; 64],
+            field_count: 0,
+            record_line: 1,
+            record_byte: 0,
+        };
+        table.check_encoding()?;
+        Ok(table)
+    }
+
+    /// Sets the delimiter; `b' '` stands for runs of blanks and tabs, which count once. `None` looks for the most frequent of
+    /// comma, semicolon and tab in the first record, and takes blanks where there is none of them.
+    ///
+    /// To be called before the first record is read.
+    pub fn set_delimiter(&mut self, delimiter: Option<u8>) -> Result<()> {
+        let delimiter = match delimiter {
+            Some(delimiter) => delimiter,
+            None => delimiter_of(self.first_line()?),
+        };
+        self.parser = parser(delimiter);
+        self.blanks = delimiter == b' ';
+        if self.blanks {
+            self.buffer.turn_tabs_to_blanks();
+        }
+        Ok(())
+    }
+
+    /// The line of the next record, without using it; as much of it as fits the buffer, and empty at the end of the file.
+    pub fn first_line(&mut self) -> Result<&[u8]> {
+        self.skip_to_record()?;
+        let mut searched = 0;
+        loop {
+            let rest = self.buffer.rest();
+            if let Some(at) = memchr2(b'\n', b'\r', &rest[searched..]) {
+                return Ok(&self.buffer.rest()[..searched + at]);
+            }
+            searched = rest.len();
+            if !self.buffer.fill()? {
+                return Ok(self.buffer.rest());
+            }
+        }
+    }
+
+    /// Reads the next record. One that is too long is passed over, and reported as a problem.
+    pub fn next_record(&mut self, problems: &mut dyn FnMut(Problem)) -> Result<Next> {
+        loop {
+            if !self.skip_to_record()? {
+                return Ok(Next::End);
+            }
+            self.record_line = self.line;
+            self.record_byte = self.buffer.position();
+            match self.read_record()? {
+                Outcome::Complete => {}
+                Outcome::TooLong => {
+                    problems(self.pass_over()?);
+                    return Ok(Next::Unusable);
+                }
+            }
+            if self.blanks {
+                self.drop_empty_fields();
+            }
+            // A line of nothing but blanks is a blank line.
+            let blank = self.field_count < 2 && self.record().get(0).is_none_or(<[u8]>::is_empty);
+            if !blank {
+                return Ok(Next::Record);
+            }
+        }
+    }
+
+    /// The record that was read last.
+    #[inline]
+    pub fn record(&self) -> Record<'_> {
+        Record { bytes: &self.fields, ends: self.ends.get(..self.field_count).unwrap_or_default() }
+    }
+
+    /// Where the last record begins.
+    pub fn place(&self) -> Place {
+        Place { file: self.buffer.name().clone(), line: self.record_line, byte: self.record_byte }
+    }
+
+    /// Writes [`Table::place`] over another place, without a new reference to the name where it is the same.
+    #[inline]
+    pub(super) fn write_place(&self, place: &mut Place) {
+        if !Arc::ptr_eq(&place.file, self.buffer.name()) {
+            place.file = self.buffer.name().clone();
+        }
+        place.line = self.record_line;
+        place.byte = self.record_byte;
+    }
+
+    /// Lines the last record extends over: more than 1 where a quoted field holds line ends.
+    pub fn lines_of_record(&self) -> u64 {
+        (self.line - self.record_line).max(1)
+    }
+
+    /// Whether the next record has to be waited for: what was read from the file so far holds no complete one.
+    pub fn drained(&self) -> bool {
+        let mut rest = self.buffer.rest();
+        if self.buffer.ended() {
+            return rest.is_empty();
+        }
+        // After an odd number of quotes, a line end stands within quotes.
+        let (mut quotes, mut blank) = (0, true);
+        while let Some(at) = memchr2(b'\n', b'\r', rest) {
+            let (line, after) = rest.split_at(at);
+            let text = if self.blanks { line.trim_ascii_start() } else { line };
+            let comment = blank && text.starts_with(b"#");
+            if !comment {
+                quotes += memchr_iter(b'"', line).count();
+                blank &= line.trim_ascii().is_empty();
+            }
+            if !blank && quotes % 2 == 0 {
+                return false;
+            }
+            rest = after.get(1..).unwrap_or_default();
+        }
+        true
+    }
+
+    /// Bytes used so far.
+    pub fn position(&self) -> u64 {
+        self.buffer.position()
+    }
+
+    /// An error about the file's form, at the last record.
+    pub fn format_error(&self, message: impl Into<String>) -> Error {
+        Error::Format { place: self.place(), message: message.into() }
+    }
+
+    fn check_encoding(&mut self) -> Result<()> {
+        while self.buffer.rest().len() < MARK && self.buffer.fill()? {}
+        let rest = self.buffer.rest();
+        let mark = &rest[..rest.len().min(MARK)];
+        if mark.starts_with(b"\xff\xfe") || mark.starts_with(b"\xfe\xff") || memchr(0, mark).is_some() {
+            return Err(self.format_error("is UTF-16, or no text at all: convert it to UTF-8"));
+        }
+        if mark.starts_with(b"\xef\xbb\xbf") {
+            self.buffer.use_up(3);
+        }
+        match self.buffer.peek()? {
+            Some(_) => Ok(()),
+            None => Err(self.format_error("is empty")),
+        }
+    }
+
+    /// Passes over line ends and comments; `false` at the end of the file.
+    fn skip_to_record(&mut self) -> Result<bool> {
+        while let Some(byte) = self.buffer.peek()? {
+            match byte {
+                b'\n' | b'\r' => self.use_line_end(byte),
+                b'#' => self.skip_line()?,
+                b' ' if self.blanks => self.buffer.use_up(1),
+                _ => {
+                    self.after_return = false;
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Uses the line end that comes next, and counts it; CR LF counts once.
+    fn use_line_end(&mut self, byte: u8) {
+        if !(byte == b'\n' && self.after_return) {
+            self.line += 1;
+        }
+        self.after_return = byte == b'\r';
+        self.buffer.use_up(1);
+    }
+
+    /// Passes over the rest of a line, up to its end.
+    fn skip_line(&mut self) -> Result<()> {
+        self.after_return = false;
+        while self.buffer.peek()?.is_some() {
+            let rest = self.buffer.rest();
+            let end = memchr2(b'\n', b'\r', rest);
+            let count = end.unwrap_or(rest.len());
+            self.buffer.use_up(count);
+            if end.is_some() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn read_record(&mut self) -> Result<Outcome> {
+        let (mut used, mut field_bytes, mut field_count) = (0, 0, 0);
+        self.parser.set_line(self.line);
+        loop {
+            self.buffer.peek()?;
+            // One byte more than the longest record: its line end.
+            let budget = MAX_RECORD + 1 - used;
+            if budget == 0 {
+                return Ok(Outcome::TooLong);
+            }
+            let rest = self.buffer.rest();
+            let input = &rest[..rest.len().min(budget)];
+            let output = self.fields.get_mut(field_bytes..).unwrap_or_default();
+            let ends = self.ends.get_mut(field_count..).unwrap_or_default();
+            let (result, read, written, ended) = self.parser.read_record(input, output, ends);
+            let returned = input[..read].last() == Some(&b'\r');
+            used += read;
+            field_bytes += written;
+            field_count += ended;
+            self.buffer.use_up(read);
+            match result {
+                ReadRecordResult::InputEmpty => {}
+                ReadRecordResult::OutputFull => self.fields.resize(2 * self.fields.len(), 0),
+                ReadRecordResult::OutputEndsFull if field_count >= MAX_FIELDS => return Ok(Outcome::TooLong),
+                ReadRecordResult::OutputEndsFull => self.ends.resize(2 * self.ends.len(), 0),
+                ReadRecordResult::Record | ReadRecordResult::End => {
+                    self.field_count = field_count;
+                    // The parser counts newlines alone.
+                    self.line = self.parser.line() + u64::from(returned);
+                    self.after_return = returned;
+                    return Ok(Outcome::Complete);
+                }
+            }
+        }
+    }
+
+    /// Passes over what is left of a record that is too long, to the end of the line, whatever its quotes say: a quote left
+    /// open does not swallow the rest of the file.
+    fn pass_over(&mut self) -> Result<Problem> {
+        self.line = self.parser.line();
+        self.field_count = 0;
+        self.parser.reset();
+        self.skip_line()?;
+        let bytes = self.buffer.position() - self.record_byte;
+        let value = format!("a record of {bytes} bytes; it may have {MAX_RECORD} bytes and {MAX_FIELDS} fields");
+        Ok(Problem { reason: Reason::TooLong, place: self.place(), value })
+    }
+
+    /// Fields lie one after the other without gaps, so an empty one ends where the one before it does.
+    fn drop_empty_fields(&mut self) {
+        let (mut kept, mut last) = (0, 0);
+        for index in 0..self.field_count {
+            let end = self.ends[index];
+            if end != last {
+                self.ends[kept] = end;
+                kept += 1;
+                last = end;
+            }
+        }
+        self.field_count = kept;
+    }
+}
+
+fn parser(delimiter: u8) -> csv_core::Reader {
+    ReaderBuilder::new().delimiter(delimiter).build()
+}
+
+/// The most frequent of [`DELIMITERS`] outside quotes, the earlier one where two are; a blank where there is none.
+fn delimiter_of(line: &[u8]) -> u8 {
+    let mut counts = [0; DELIMITERS.len()];
+    let mut quoted = false;
+    for byte in line {
+        quoted ^= *byte == b'"';
+        if let Some(index) = DELIMITERS.iter().position(|delimiter| !quoted && delimiter == byte) {
+            counts[index] += 1;
+        }
+    }
+    let (mut best, mut most) = (b' ', 0);
+    for (delimiter, count) in DELIMITERS.into_iter().zip(counts) {
+        if count > most {
+            (best, most) = (delimiter, count);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,1 +1,85 @@
-//! The `atm` command as a library.
+//! The `atm` command as a library: arguments, progress, exit codes; no algorithm.
+
+mod args;
+mod command;
+mod report;
+
+use std::{
+    ffi::OsString,
+    io::{self, Write},
+};
+
+use atm::error::Error;
+use clap::Parser;
+
+use crate::args::{Cli, Command};
+
+/// How a run ended well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// Everything was used.
+    Done,
+    /// Done, but part of the input was unusable.
+    Partly,
+}
+
+/// How a run did not end well.
+#[derive(Debug)]
+enum Failure {
+    /// The arguments are wrong.
+    Usage(String),
+    /// It could not be done.
+    Failed(String),
+    /// Whoever read the output has closed it: nothing to say.
+    ReaderGone,
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match &error {
+            Error::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            Error::Settings { .. } => Self::Usage(error.to_string()),
+            _ => Self::Failed(error.to_string()),
+        }
+    }
+}
+
+/// Runs the command line `args`, the program's name first, and returns the exit status: 0 done, 1 failed, 2 wrong
+/// arguments, 3 done but part of the input was unusable.
+pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version come this way, too; a closed standard output is no error for them.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(2);
+        }
+    };
+    let result = match &cli.command {
+        Command::Fuse(args) => command::fuse::run(args),
+        Command::Plan(args) => command::plan::run(args),
+        Command::Info(args) => command::info::run(args),
+    };
+    match result {
+        Ok(Outcome::Done) | Err(Failure::ReaderGone) => 0,
+        Ok(Outcome::Partly) => 3,
+        Err(Failure::Failed(message)) => {
+            report::say(format_args!("atm: {message}"));
+            1
+        }
+        Err(Failure::Usage(message)) => {
+            report::say(format_args!("atm: {message}"));
+            2
+        }
+    }
+}
+
+/// Prints a result on standard output.
+fn print(text: &str) -> Result<Outcome, Failure> {
+    let mut stdout = io::stdout().lock();
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(|source| Failure::from(Error::Io { file: "standard output".into(), source }))?;
+    Ok(Outcome::Done)
+}

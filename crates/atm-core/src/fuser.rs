@@ -66,14 +66,16 @@ pub struct ArcCrossing<T: Scalar> {
 
 /// Where reports go. Any `FnMut(&E)` is one that takes the echoes alone.
 pub trait Sink<T: Scalar, E> {
-    /// Whether [`Sink::crossing`] is to be called.
-    const WANTS_CROSSINGS: bool = false;
-
     /// An arc's echo.
     fn echo(&mut self, echo: &E);
 
     /// An arc that gave no echo, with its count of crossings.
     fn ignored(&mut self, _crossings: u32) {}
+
+    /// Whether [`Sink::crossing`] is to be called.
+    fn wants_crossings(&self) -> bool {
+        false
+    }
 
     /// A crossing on the arc that is reported next, by its echo or as ignored. In no particular order.
     fn crossing(&mut self, _crossing: &ArcCrossing<T>) {}
@@ -235,12 +237,12 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
     }
 
     /// Sec. III: collect the arc's transversal crossings with the arcs it met, take their median, say so.
-    fn report<K: Sink<T, E::Echo>>(&mut self, slot: usize, arc: &ReportedArc<T>, scope: Scope, sink: &mut K) {
+    fn report(&mut self, slot: usize, arc: &ReportedArc<T>, scope: Scope, sink: &mut impl Sink<T, E::Echo>) {
         let estimator = &self.estimator;
         self.map.storage.with_scratch(|columns, scratch| {
             let partners = Partners { columns: &columns, slot, scope };
             let verdict = estimator.estimate(arc, &partners, scratch, |other, crossing| {
-                if K::WANTS_CROSSINGS {
+                if sink.wants_crossings() {
                     sink.crossing(&ArcCrossing {
                         t: arc.t,
                         sensor: arc.sensor,

@@ -1,0 +1,60 @@
+//! What kind of file it is, by its content.
+
+use std::io::{self, Cursor, Read};
+
+use super::Input;
+use crate::error::{Error, Result};
+
+/// The first bytes of an MCAP file (mcap.dev/spec).
+const MCAP_MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
+
+/// The formats that can be told apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Format {
+    /// A text table.
+    Csv,
+    /// An MCAP recording.
+    Mcap,
+}
+
+impl Input {
+    /// What the first bytes say it is; they are still there to be read.
+    ///
+    /// # Errors
+    /// The file can't be read.
+    pub fn sniff(mut self) -> Result<(Format, Self)> {
+        let mut start = Vec::with_capacity(MCAP_MAGIC.len());
+        let magic = MCAP_MAGIC.len() as u64;
+        let mut reader = self.reader;
+        reader
+            .by_ref()
+            .take(magic)
+            .read_to_end(&mut start)
+            .map_err(|source| Error::Io { file: self.name.clone(), source })?;
+        let format = if start == MCAP_MAGIC { Format::Mcap } else { Format::Csv };
+        self.reader = Box::new(Cursor::new(start).chain(reader)) as Box<dyn io::Read>;
+        Ok((format, self))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sniffed(bytes: &'static [u8]) -> (Format, Vec<u8>) {
+        let input = Input { reader: Box::new(bytes), name: "log".into(), length: None };
+        let (format, mut input) = input.sniff().unwrap();
+        let mut read = Vec::new();
+        input.reader.read_to_end(&mut read).unwrap();
+        (format, read)
+    }
+
+    #[test]
+    fn mcap_is_known_by_its_magic_and_nothing_is_lost() {
+        assert_eq!(sniffed(b"\x89MCAP0\r\nrest"), (Format::Mcap, b"\x89MCAP0\r\nrest".to_vec()));
+        assert_eq!(sniffed(b"t,sensor,range\n"), (Format::Csv, b"t,sensor,range\n".to_vec()));
+        assert_eq!(sniffed(b"t,"), (Format::Csv, b"t,".to_vec()));
+        assert_eq!(sniffed(b""), (Format::Csv, Vec::new()));
+    }
+}

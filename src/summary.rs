@@ -1,0 +1,119 @@
+//! What a run has counted.
+
+use std::collections::BTreeMap;
+
+use atm_core::Kind;
+use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use crate::error::{Problem, Reason};
+
+/// The counts of one run. As JSON, one object with these keys.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Summary {
+    /// Readings that entered the local map, those without echo included.
+    pub readings: u64,
+    /// Readings without an echo: nothing there, too close, or no number.
+    pub no_echo: u64,
+    /// Echoes of each kind, before any are left out.
+    #[serde(serialize_with = "by_kind")]
+    pub echoes: Counts,
+    /// Echoes written.
+    pub written: u64,
+    /// Arcs that gave no echo because of exactly two crossings.
+    pub ignored_pairs: u64,
+    /// Arcs that gave no echo because nothing crossed them, where that was asked for.
+    pub ignored_none: u64,
+    /// Usable readings that took no slot.
+    pub skipped: Skipped,
+    /// Unusable records.
+    #[serde(serialize_with = "by_reason")]
+    pub dropped: Dropped,
+    /// Times at which the clock was taken to have been set back.
+    pub clock_resets: u64,
+    /// Whether the input ends in the middle of something.
+    pub input_damaged: bool,
+}
+
+/// Readings that were usable and still took no slot in the local map.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Skipped {
+    /// Equal to the sensor's previous reading.
+    pub held: u64,
+    /// The sensor had moved less than the smallest step.
+    pub min_step: u64,
+    /// Empty cells: sensors that did not fire.
+    pub empty: u64,
+}
+
+/// A count for each kind of echo.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts([u64; Kind::ALL.len()]);
+
+impl Counts {
+    /// Counts one.
+    pub fn add(&mut self, kind: Kind) {
+        for (count, listed) in self.0.iter_mut().zip(Kind::ALL) {
+            *count += u64::from(listed == kind);
+        }
+    }
+
+    /// Each kind with its count.
+    pub fn iter(&self) -> impl Iterator<Item = (Kind, u64)> {
+        Kind::ALL.into_iter().zip(self.0)
+    }
+
+    /// The count of one kind.
+    pub fn get(&self, kind: Kind) -> u64 {
+        self.iter().filter(|&(listed, _)| listed == kind).map(|(_, count)| count).sum()
+    }
+
+    /// All together.
+    pub fn total(&self) -> u64 {
+        self.0.iter().sum()
+    }
+}
+
+/// Unusable records by reason, with the first of each.
+#[derive(Debug, Clone, Default)]
+pub struct Dropped(BTreeMap<Reason, (u64, Problem)>);
+
+impl Dropped {
+    /// Counts one.
+    pub fn add(&mut self, problem: Problem) {
+        self.0.entry(problem.reason).and_modify(|(count, _)| *count += 1).or_insert((1, problem));
+    }
+
+    /// Each reason met, with its count and its first record.
+    pub fn iter(&self) -> impl Iterator<Item = (Reason, u64, &Problem)> {
+        self.0.iter().map(|(&reason, (count, first))| (reason, *count, first))
+    }
+
+    /// The count of one reason.
+    pub fn get(&self, reason: Reason) -> u64 {
+        self.0.get(&reason).map_or(0, |(count, _)| *count)
+    }
+
+    /// All together.
+    pub fn total(&self) -> u64 {
+        self.0.values().map(|(count, _)| count).sum()
+    }
+}
+
+impl Summary {
+    /// Whether every record of the input could be used.
+    pub fn is_clean(&self) -> bool {
+        self.dropped.total() == 0 && !self.input_damaged
+    }
+}
+
+fn by_kind<S: Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(counts.iter().map(|(kind, count)| (kind.name(), count)))
+}
+
+fn by_reason<S: Serializer>(dropped: &Dropped, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(dropped.0.len()))?;
+    for (reason, count, _) in dropped.iter() {
+        map.serialize_entry(reason.key(), &count)?;
+    }
+    map.end()
+}
