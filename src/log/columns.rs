@@ -25,7 +25,9 @@ impl Columns {
             let mut too_long = None;
             match table.next_record(&mut |problem| too_long = Some(problem.value))? {
                 Next::Record => {}
-                Next::Unusable => return Err(table.format_error(format!("the header is {}", too_long.unwrap_or_default()))),
+                Next::Unusable => {
+                    return Err(table.format_error(format!("the header is {}", too_long.unwrap_or_default())));
+                }
                 Next::End => return Err(table.format_error("holds no header, only blank lines and comments")),
             }
         }

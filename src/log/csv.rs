@@ -100,7 +100,10 @@ impl SensorNames for Discover {
 
 /// Where the ranges stand.
 enum Layout {
-    Long { sensor: usize, range: usize },
+    Long {
+        sensor: usize,
+        range: usize,
+    },
     /// Sensor and column, in the order of the columns.
     Wide(Vec<(u16, usize)>),
 }
@@ -124,7 +127,13 @@ impl<N: SensorNames> CsvReadings<N> {
     ///
     /// Errors where the file can't be read or is no text, and where a needed column is missing or there twice. A wide table needs a
     /// column for every sensor that is known.
-    pub fn new(input: Input, format: &TableFormat, poses: PoseUse, empty: Option<EmptyCell>, mut names: N) -> Result<Self> {
+    pub fn new(
+        input: Input,
+        format: &TableFormat,
+        poses: PoseUse,
+        empty: Option<EmptyCell>,
+        mut names: N,
+    ) -> Result<Self> {
         let mut table = Table::new(input.reader, input.name)?;
         table.set_delimiter(format.delimiter)?;
         let columns = Columns::read(&mut table, format)?;
@@ -136,7 +145,9 @@ impl<N: SensorNames> CsvReadings<N> {
                 Ok(cells) => Some(cells),
                 Err(missing) => {
                     let missing = list(&missing);
-                    return Err(columns.error(&format!("no column for the pose ({missing}); poses in a second file come with --poses")));
+                    return Err(columns.error(&format!(
+                        "no column for the pose ({missing}); poses in a second file come with --poses"
+                    )));
                 }
             },
         };

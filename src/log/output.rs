@@ -66,7 +66,9 @@ impl Output {
         let refused = |kind, message: &str| failed(io::Error::new(kind, message));
         let existing = existing(Path::new(path)).map_err(failed)?;
         match &existing {
-            Some(metadata) if metadata.is_dir() => return Err(refused(io::ErrorKind::IsADirectory, "is a directory, not a file")),
+            Some(metadata) if metadata.is_dir() => {
+                return Err(refused(io::ErrorKind::IsADirectory, "is a directory, not a file"));
+            }
             Some(metadata) if !metadata.is_file() || is_descriptor(path) => {
                 // Appending matters only behind a descriptor of a regular file, which others write to as well.
                 let file = OpenOptions::new().append(true).open(path).map_err(failed)?;

@@ -59,7 +59,8 @@ impl PoseLog {
             (time, pose) => {
                 let missing = time.is_none().then_some("t").into_iter().chain(pose.err().into_iter().flatten());
                 let missing = list(&missing.collect::<Vec<_>>());
-                let message = format!("neither TUM (t x y z qx qy qz qw) nor CSV with t, x, y, yaw: no column {missing}");
+                let message =
+                    format!("neither TUM (t x y z qx qy qz qw) nor CSV with t, x, y, yaw: no column {missing}");
                 Err(columns.error(&message))
             }
         }

@@ -50,8 +50,8 @@ impl<'a> Record<'a> {
     }
 
     /// The fields in order.
-    pub fn fields(&self) -> impl Iterator<Item = &'a [u8]> {
-        (0..self.len()).filter_map(|index| self.get(index))
+    pub fn fields(self) -> impl Iterator<Item = &'a [u8]> {
+        (0..self.len()).filter_map(move |index| self.get(index))
     }
 }
 
