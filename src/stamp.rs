@@ -32,8 +32,8 @@ pub fn decimal_shift(unit: &str) -> Option<i32> {
 /// Reads a decimal number and returns it times 10^`decimal_shift`, in nanoseconds, rounded half-even.
 ///
 /// The number is an optional sign, digits, and optionally a point with digits and an exponent (`12`, `-0.5`, `+1.7e9`);
-/// ASCII blanks around it are ignored. `None` for anything else (`nan`, `inf`, nothing at all, `.5`, `5.`) and for
-/// what does not fit an `i64`. Takes time linear in the text, whatever the exponent.
+/// ASCII blanks around it are ignored, and digits are needed on one side of the point only (`.5`, `5.`). `None` for anything
+/// else (`nan`, `inf`, nothing at all) and for what does not fit an `i64`. Takes time linear in the text, whatever the exponent.
 pub fn parse(bytes: &[u8], decimal_shift: i32) -> Option<i64> {
     Decimal::read_short(bytes).or_else(|| Decimal::read(bytes))?.nanoseconds(decimal_shift)
 }
@@ -146,7 +146,7 @@ impl Decimal {
         let decimals = match point {
             None if bytes.is_empty() || bytes.len() == most => return None,
             None => 0,
-            Some(at) if at == 0 || at + 1 == bytes.len() => return None,
+            Some(_) if bytes.len() == 1 => return None,
             Some(at) => bytes.len() - at - 1,
         };
         Some(Self { negative: false, mantissa, kept: 0, tail: Tail::Zero, exponent: -(decimals as i64) })
@@ -161,15 +161,19 @@ impl Decimal {
             rest = after;
         }
         let mut beyond = 0;
-        rest = decimal.read_digits(rest, &mut beyond)?;
+        let number = rest;
+        rest = decimal.read_digits(rest, &mut beyond);
+        let mut digits = number.len() - rest.len();
         // Each digit that was not kept still counts in the size of the number.
         let whole_beyond = beyond;
         if let [b'.', after @ ..] = rest {
-            rest = decimal.read_digits(after, &mut beyond)?;
+            rest = decimal.read_digits(after, &mut beyond);
+            digits += after.len() - rest.len();
             decimal.exponent = (beyond - whole_beyond) - (after.len() - rest.len()) as i64;
         }
         decimal.exponent += whole_beyond;
         match rest {
+            _ if digits == 0 => return None,
             [] => {}
             [b'e' | b'E', after @ ..] => decimal.exponent += read_exponent(after)?,
             _ => return None,
@@ -177,8 +181,8 @@ impl Decimal {
         Some(decimal)
     }
 
-    /// Takes a run of at least one digit and returns what follows; counts in `beyond` the digits that were not kept.
-    fn read_digits<'a>(&mut self, text: &'a [u8], beyond: &mut i64) -> Option<&'a [u8]> {
+    /// Takes a run of digits and returns what follows; counts in `beyond` the digits that were not kept.
+    fn read_digits<'a>(&mut self, text: &'a [u8], beyond: &mut i64) -> &'a [u8] {
         let mut rest = text;
         while let [byte @ b'0'..=b'9', after @ ..] = rest {
             let digit = byte - b'0';
@@ -191,7 +195,7 @@ impl Decimal {
             }
             rest = after;
         }
-        (rest.len() < text.len()).then_some(rest)
+        rest
     }
 
     /// The number times 10^`shift`, rounded half-even to a whole number.

@@ -280,7 +280,7 @@ impl Quantity {
 
 /// Where the decimal number at the start of a text ends: 0 where there is none.
 ///
-/// The grammar is that of [`stamp::parse`]: a sign, digits, a point with digits, an exponent.
+/// The grammar is that of [`stamp::parse`]: a sign, digits with a point before, between or after them, an exponent.
 fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| {
@@ -288,12 +288,13 @@ fn number_end(text: &str) -> usize {
         from + rest.iter().take_while(|byte| byte.is_ascii_digit()).count()
     };
     let signed = |at: usize| at + usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
-    let mut end = digits(signed(0));
-    if end == signed(0) {
-        return 0;
-    }
-    if bytes.get(end) == Some(&b'.') && digits(end + 1) > end + 1 {
+    let start = signed(0);
+    let mut end = digits(start);
+    if bytes.get(end) == Some(&b'.') && digits(end + 1) > start + 1 {
         end = digits(end + 1);
+    }
+    if end == start {
+        return 0;
     }
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
         let start = signed(end + 1);

@@ -98,7 +98,7 @@ fn both_ends_of_the_range_are_read_and_the_next_are_not() {
 #[test]
 fn what_is_no_number_is_refused() {
     let texts = [
-        "", " ", "+", "-", ".", "-.", ".5", "5.", "e5", "1e", "1e+", "1.e5", "1 2", "1,5", "0x10", "1_000", "--1",
+        "", " ", "+", "-", ".", "-.", ".e5", "e5", "1e", "1e+", "1 2", "1,5", "0x10", "1_000", "--1",
         "+-1", "1.2.3", "1e2.5", "1e5e5", "nan", "inf", "-inf", "Infinity", "5s", "٣",
     ];
     for text in texts {
@@ -106,6 +106,14 @@ fn what_is_no_number_is_refused() {
     }
     assert_eq!(parse(b"1\xff", 9), None);
     assert_eq!(parse(b"1\0", 9), None);
+}
+
+#[test]
+fn digits_on_one_side_of_the_point_are_enough() {
+    assert_eq!(seconds(".5"), Some(500_000_000));
+    assert_eq!(seconds("-.5"), Some(-500_000_000));
+    assert_eq!(seconds("5."), Some(5_000_000_000));
+    assert_eq!(seconds("1.e1"), Some(10_000_000_000));
 }
 
 #[test]

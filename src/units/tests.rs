@@ -9,6 +9,9 @@ fn message<T: std::fmt::Debug>(result: Result<T, UnitError>) -> String {
 #[test]
 fn lengths_take_every_unit() {
     assert_eq!(length("2.5m"), Ok(2.5));
+    assert_eq!(length(".5m"), Ok(0.5));
+    assert_eq!(length("-.5 m"), Ok(-0.5));
+    assert_eq!(length("5.m"), Ok(5.0));
     assert_eq!(length("25cm"), Ok(0.25));
     assert_eq!(length("10mm"), Ok(0.01));
     assert_eq!(length("1in"), Ok(0.0254));
@@ -111,7 +114,7 @@ fn units_of_another_case_or_kind_are_unknown() {
 #[test]
 fn what_does_not_begin_with_a_number_is_refused() {
     for text in
-        ["", " ", "m", "in", "inf", "nan", "NaNm", "-", "+m", ".5m", "--1m", "−1m", "a1m", "1٣".trim_start_matches('1')]
+        ["", " ", "m", "in", "inf", "nan", "NaNm", "-", "+m", ".m", "-.", "--1m", "−1m", "a1m", "1٣".trim_start_matches('1')]
     {
         let error = length(text).unwrap_err();
         assert!(matches!(error, UnitError::NotANumber { .. }), "{text:?}: {error}");
