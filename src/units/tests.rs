@@ -101,7 +101,7 @@ fn the_letter_e_is_an_exponent_only_before_digits() {
 
 #[test]
 fn units_of_another_case_or_kind_are_unknown() {
-    for text in ["1M", "1MM", "1inch", "1 m m", "1s", "1km", "1m/s", "1.m", "1,5m", "1µm"] {
+    for text in ["1M", "1MM", "1inch", "1 m m", "1s", "1km", "1m/s", "1.m.", "1,5m", "1µm"] {
         let error = length(text).unwrap_err();
         assert!(matches!(error, UnitError::UnknownUnit { .. }), "{error}");
     }
