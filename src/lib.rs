@@ -4,12 +4,12 @@ pub use atm_core as core;
 
 pub mod error;
 pub mod log;
+pub mod pipeline;
 pub mod rig;
 pub mod stamp;
 pub mod storage;
+pub mod summary;
+pub mod survey;
 pub mod track;
 pub mod units;
 pub mod world;
-pub mod pipeline;
-pub mod summary;
-pub mod survey;

@@ -61,7 +61,10 @@ impl Defaults {
     /// # Errors
     /// A value of the rig that is outside its domain, by the sensor's id.
     pub fn complete(&self, rig: &Rig) -> Result<Vec<SensorModel>> {
-        rig.sensors().iter().map(|sensor| self.complete_one(sensor).map_err(|error| named(rig, sensor.id(), error))).collect()
+        rig.sensors()
+            .iter()
+            .map(|sensor| self.complete_one(sensor).map_err(|error| named(rig, sensor.id(), error)))
+            .collect()
     }
 
     fn complete_one(&self, sensor: &crate::rig::Sensor) -> Result<SensorModel, atm_core::DomainError> {
@@ -138,10 +141,12 @@ pub fn fuse(
             let fuser = Fuser::latest(estimator, bounds, storage);
             Run::new(fuser, track, sensors, settings.strict, sink, &mut summary).read(source, progress)
         }),
-        Emit::Settled => SettledSlots::new(sensors.len(), settings.history).map_err(storage_error).and_then(|storage| {
-            let fuser = Fuser::settled(estimator, bounds, storage);
-            Run::new(fuser, track, sensors, settings.strict, sink, &mut summary).read(source, progress)
-        }),
+        Emit::Settled => {
+            SettledSlots::new(sensors.len(), settings.history).map_err(storage_error).and_then(|storage| {
+                let fuser = Fuser::settled(estimator, bounds, storage);
+                Run::new(fuser, track, sensors, settings.strict, sink, &mut summary).read(source, progress)
+            })
+        }
     };
     (summary, result)
 }
@@ -174,13 +179,14 @@ impl<'a, S: Storage<f64>> Run<'a, S> {
         Self { fuser, track, sensors, strict, clock: Clock::default(), epoch: 0, reports }
     }
 
-    /// Reads to the end; on the way out, whatever the reason, the echoes still in the local map are reported.
+    /// Reads to the end, and reports what is in the local map then. A run that fails reports no more: what it has
+    /// written is the beginning of what an undisturbed run writes.
     fn read(mut self, source: &mut dyn Source, progress: &mut dyn FnMut(u64)) -> Result<()> {
         let read = self.rows(source, progress);
-        if self.reports.failed.is_none() {
+        if read.is_ok() {
             self.fuser.finish(&mut self.reports);
+            self.reports.check()?;
         }
-        self.reports.check()?;
         self.reports.sink.flush()?;
         read
     }
@@ -222,8 +228,11 @@ impl<'a, S: Storage<f64>> Run<'a, S> {
             self.reports.summary.dropped.add(no_pose(row));
             return Ok(());
         };
-        self.clock.admit(row.t);
         self.reports.summary.skipped.empty += row.empty;
+        // A record without a usable reading does not set the clock.
+        if !row.readings.is_empty() {
+            self.clock.admit(row.t);
+        }
         for reading in readings(row, pose, self.sensors) {
             self.push(row, &reading);
         }
@@ -264,7 +273,11 @@ impl<'a, S: Storage<f64>> Run<'a, S> {
                     Rejected::TimeBackwards => Reason::TimeBackwards,
                     _ => Reason::BadPose,
                 };
-                self.drop_value(row, reason, format!("sensor number {} at t {}: {rejected}", reading.sensor, stamp::text(row.t)));
+                self.drop_value(
+                    row,
+                    reason,
+                    format!("sensor number {} at t {}: {rejected}", reading.sensor, stamp::text(row.t)),
+                );
             }
         }
     }

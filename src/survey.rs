@@ -75,7 +75,9 @@ pub fn survey(source: &mut dyn Source, mut track: Option<&mut AnyTrack>, limits:
                 continue;
             }
         }
-        clock.admit(row.t);
+        if !row.readings.is_empty() {
+            clock.admit(row.t);
+        }
         survey.add(&row, limits, &mut last);
     }
 }

@@ -17,7 +17,7 @@ impl PoseStream for Stream {
 }
 
 fn track(poses: &[(i64, f64, f64, f64)], max_gap: i64) -> Track<Stream> {
-    Track::new(Stream(poses.to_vec().into_iter()), max_gap.unsigned_abs())
+    Track::new(Stream(Vec::from(poses).into_iter()), max_gap.unsigned_abs())
 }
 
 /// Poses at whole seconds, moving along x at 1 m/s.
@@ -81,9 +81,9 @@ fn there_is_no_pose_before_the_first_and_after_the_last() {
 #[test]
 fn extreme_times_do_not_overflow() {
     let poses = [(i64::MIN, 0.0, 0.0, 0.0), (i64::MAX, 2.0, 0.0, 0.0)];
-    let mut wide = Track::new(Stream(poses.to_vec().into_iter()), u64::MAX);
+    let mut wide = Track::new(Stream(Vec::from(poses).into_iter()), u64::MAX);
     assert_eq!(x_at(&mut wide, 0, 0), Some(1.0));
-    let mut narrow = Track::new(Stream(poses.to_vec().into_iter()), S as u64);
+    let mut narrow = Track::new(Stream(Vec::from(poses).into_iter()), S as u64);
     assert_eq!(x_at(&mut narrow, 0, 0), None);
     assert_eq!(x_at(&mut narrow, 0, i64::MAX), Some(2.0));
 }

@@ -113,9 +113,23 @@ fn units_of_another_case_or_kind_are_unknown() {
 
 #[test]
 fn what_does_not_begin_with_a_number_is_refused() {
-    for text in
-        ["", " ", "m", "in", "inf", "nan", "NaNm", "-", "+m", ".m", "-.", "--1m", "−1m", "a1m", "1٣".trim_start_matches('1')]
-    {
+    for text in [
+        "",
+        " ",
+        "m",
+        "in",
+        "inf",
+        "nan",
+        "NaNm",
+        "-",
+        "+m",
+        ".m",
+        "-.",
+        "--1m",
+        "−1m",
+        "a1m",
+        "1٣".trim_start_matches('1'),
+    ] {
         let error = length(text).unwrap_err();
         assert!(matches!(error, UnitError::NotANumber { .. }), "{text:?}: {error}");
     }

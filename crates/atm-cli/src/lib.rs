@@ -34,10 +34,15 @@ enum Failure {
     ReaderGone,
 }
 
+/// Whether it is that whoever read the output has closed it.
+fn is_reader_gone(error: &Error) -> bool {
+    matches!(error, Error::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
+}
+
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match &error {
-            Error::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            _ if is_reader_gone(&error) => Self::ReaderGone,
             Error::Settings { .. } => Self::Usage(error.to_string()),
             _ => Self::Failed(error.to_string()),
         }

@@ -26,6 +26,10 @@ impl<T: Scalar> MinAngle<T> {
         if !(radians >= degree && radians <= right_angle) {
             return Err(DomainError::MinAngle);
         }
+        // The paper's angle is the constant, whichever way it is asked for.
+        if radians == T::PI / T::from_count(6) {
+            return Ok(Self::PAPER);
+        }
         let (_, cos) = radians.sine_cosine();
         Ok(Self { cos, cot_half: T::ONE / (radians / T::TWO).tangent() })
     }
@@ -66,6 +70,35 @@ impl<T: Scalar> Crossing<T> {
     }
 }
 
+/// The triangle of two sensors and a point that is as far from each as its reading says.
+pub(crate) struct Triangle<T> {
+    distance_squared: T,
+    square: T,
+    other_square: T,
+    /// 2 rA rB.
+    twice_product: T,
+    /// rA² + rB² − d² = 2 rA rB cos θ.
+    numerator: T,
+}
+
+impl<T: Scalar> Triangle<T> {
+    /// `between` the sensors, with the two radii; the radii may change places without changing a bit of the angle.
+    #[inline(always)]
+    pub(crate) fn new(between: Vector2<T>, radius: T, other_radius: T) -> Self {
+        let distance_squared = between.x * between.x + between.y * between.y;
+        let (square, other_square) = (radius * radius, other_radius * other_radius);
+        let twice_product = T::TWO * (radius * other_radius);
+        let numerator = (square + other_square) - distance_squared;
+        Self { distance_squared, square, other_square, twice_product, numerator }
+    }
+
+    /// Whether the radii meet at θmin or steeper. |cos|: radii that face each other cross near 180 degrees.
+    #[inline(always)]
+    pub(crate) fn is_transversal(&self, min_angle: &MinAngle<T>) -> bool {
+        self.numerator.magnitude() <= self.twice_product * min_angle.cos
+    }
+}
+
 /// Visits the crossings of `arc` with `other` that are at least `min_angle` steep: none, one or two.
 ///
 /// With d the distance of the sensors, the radii meet at the crossing with cos θ = (rA² + rB² − d²) / (2 rA rB), the same
@@ -74,14 +107,11 @@ impl<T: Scalar> Crossing<T> {
 #[inline(always)]
 pub fn crossings<T: Scalar>(arc: &Arc<T>, other: &Arc<T>, min_angle: &MinAngle<T>, mut visit: impl FnMut(Crossing<T>)) {
     let between = other.sensor - arc.sensor;
-    let distance_squared = between.x * between.x + between.y * between.y;
-    let (square, other_square) = (arc.radius * arc.radius, other.radius * other.radius);
-    let twice_product = T::TWO * (arc.radius * other.radius);
-    let numerator = (square + other_square) - distance_squared;
-    // |cos|: radii that face each other cross near 180 degrees.
-    if !(numerator.magnitude() <= twice_product * min_angle.cos) {
+    let triangle = Triangle::new(between, arc.radius, other.radius);
+    if !triangle.is_transversal(min_angle) {
         return;
     }
+    let Triangle { distance_squared, square, other_square, twice_product, numerator } = triangle;
     // The circles' intersections from the first centre: along the line of centres, then to either side of it, where
     // 4 × the triangle's area = √((2 rA rB)² − numerator²).
     let scale = T::HALF / distance_squared;
@@ -190,9 +220,11 @@ mod tests {
     #[test]
     fn paper_angle_is_thirty_degrees() {
         let paper = MinAngle::<f64>::PAPER;
-        let computed = MinAngle::new(30f64.to_radians()).unwrap();
+        assert_eq!(MinAngle::new(30f64.to_radians()), Ok(paper));
+        assert_eq!(MinAngle::new(30f32.to_radians()), Ok(MinAngle::PAPER));
         assert!((paper.radians() - PI / 6.0).abs() < 1e-15);
-        assert!((paper.cos - computed.cos).abs() < 1e-15);
-        assert!((paper.cot_half() - computed.cot_half()).abs() < 1e-14);
+        let beside = MinAngle::new(30f64.to_radians() * (1.0 + 1e-12)).unwrap();
+        assert!((paper.cos - beside.cos).abs() < 1e-11);
+        assert!((paper.cot_half() - beside.cot_half()).abs() < 1e-10);
     }
 }

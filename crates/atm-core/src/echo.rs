@@ -6,6 +6,8 @@ use crate::{arc::Bearing, scalar::Scalar, significance};
 
 /// How an echo was found (Sec. III-B).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Kind {
     /// The median of three or more transversal crossings.
@@ -38,6 +40,8 @@ impl Kind {
 
 /// One point on one arc, with how it was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Echo<T: Scalar> {
     /// The reading's own time, in nanoseconds.

@@ -4,6 +4,8 @@ use core::fmt;
 
 /// A parameter outside its domain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DomainError {
     /// The minimum crossing angle must lie in \[1°, 90°\].
@@ -51,6 +53,8 @@ impl core::error::Error for DomainError {}
 
 /// Why a reading did not arrive: it took no slot and changed nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Rejected {
     /// The sensor's index is not below the storage's number of sensors.

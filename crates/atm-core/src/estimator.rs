@@ -53,6 +53,8 @@ pub trait Estimator<T: Scalar> {
 
 /// What an arc without a transversal crossing gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum OnNone {
     /// Its centre (Sec. III-B).
     #[default]
@@ -63,6 +65,8 @@ pub enum OnNone {
 
 /// What an arc with exactly two transversal crossings gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum OnTwo {
     /// No echo (Sec. III-B).
     #[default]
@@ -138,7 +142,7 @@ impl<T: Scalar> Estimator<T> for TransversalMedian<T> {
         mut visit: impl FnMut(usize, &Crossing<T>),
     ) -> Verdict<Echo<T>> {
         let mut found = 0;
-        partners.for_each_near(&arc.arc, |slot, other| {
+        partners.for_each_transversal(&arc.arc, &self.min_angle, |slot, other| {
             crossings(&arc.arc, other, &self.min_angle, |crossing| {
                 if let Some(place) = scratch.get_mut(found) {
                     *place = crossing.sine;

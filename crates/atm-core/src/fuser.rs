@@ -34,6 +34,8 @@ pub struct Reading<T: Scalar> {
 
 /// What became of a reading that could be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Arrival {
     /// It is in the local map now.
@@ -46,6 +48,8 @@ pub enum Arrival {
 
 /// A transversal crossing on a reported arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct ArcCrossing<T: Scalar> {
     /// Time of the reported arc's reading, in nanoseconds.
@@ -275,3 +279,11 @@ impl<T: Scalar, S: SnapshotStorage<T>, E: Estimator<T>> Fuser<T, S, E> {
         }
     }
 }
+
+/// A fuser may be handed from one task or interrupt to another: what it holds and what comes out of it can be sent.
+const _: () = {
+    const fn is_send<T: Send>() {}
+    is_send::<Fuser<f32, crate::LatestArrays<f32, 1, 1>>>();
+    is_send::<Fuser<f64, crate::Arrays<f64, 1, 1, 5>>>();
+    is_send::<crate::Echo<f32>>();
+};

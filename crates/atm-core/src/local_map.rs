@@ -1,9 +1,12 @@
 //! The local map: the most recent H readings of every sensor, and who is in it when (Sec. IV-D, Length of sonar history).
 
+use core::ops::Range;
+
 use nalgebra::Vector2;
 
 use crate::{
     arc::Arc,
+    crossing::{MinAngle, Triangle},
     pose::Travel,
     scalar::Scalar,
     storage::{Columns, Entry, Storage},
@@ -274,14 +277,15 @@ pub struct Partners<'a, T> {
     pub(crate) scope: Scope,
 }
 
-/// Arcs tested at a time, without a branch: a multiple of the width of every vector unit in sight.
-const LANES: usize = 8;
+/// Arcs tested in one loop without a branch, a bit of the result for each.
+const BLOCK: usize = 32;
 
 impl<T: Scalar> Partners<'_, T> {
-    /// Visits the partners that may reach `arc`, each with its slot: first a test of their bounding circles in memory
-    /// order, without a branch for each; then, for the few that pass, whether the two have met.
+    /// Visits the partners that may have a transversal crossing with `arc`, each with its slot: first their bounding
+    /// circles, then the angle at which the circles cross, in memory order and without a branch for each; then, for the
+    /// few that pass, whether the two have met.
     #[inline(always)]
-    pub fn for_each_near(&self, arc: &Arc<T>, mut visit: impl FnMut(usize, &Arc<T>)) {
+    pub fn for_each_transversal(&self, arc: &Arc<T>, min_angle: &MinAngle<T>, mut visit: impl FnMut(usize, &Arc<T>)) {
         let arrival = self.columns.arrived(self.slot);
         let mut candidate = |slot: usize| {
             if slot != self.slot && self.meets(slot, arrival) {
@@ -289,7 +293,7 @@ impl<T: Scalar> Partners<'_, T> {
             }
         };
         if self.scope == Scope::Present {
-            return self.scan(0, self.columns.middle_x.len(), arc, &mut candidate);
+            return self.scan(0, self.columns.middle_x.len(), arc, min_angle, &mut candidate);
         }
         let depth = self.columns.depth();
         for (sensor, ring) in self.columns.rings.iter().enumerate() {
@@ -298,10 +302,10 @@ impl<T: Scalar> Partners<'_, T> {
             let start = sensor * depth;
             let (first, newest) = (back(ring.newest, age, depth), usize::from(ring.newest));
             if first <= newest {
-                self.scan(start + first, start + newest + 1, arc, &mut candidate);
+                self.scan(start + first, start + newest + 1, arc, min_angle, &mut candidate);
             } else {
-                self.scan(start + first, start + depth, arc, &mut candidate);
-                self.scan(start, start + newest + 1, arc, &mut candidate);
+                self.scan(start + first, start + depth, arc, min_angle, &mut candidate);
+                self.scan(start, start + newest + 1, arc, min_angle, &mut candidate);
             }
         }
     }
@@ -315,41 +319,53 @@ impl<T: Scalar> Partners<'_, T> {
     }
 
     #[inline(always)]
-    fn scan(&self, from: usize, to: usize, arc: &Arc<T>, candidate: &mut impl FnMut(usize)) {
-        let (Some(xs), Some(ys), Some(reaches)) = (
-            self.columns.middle_x.get(from..to),
-            self.columns.middle_y.get(from..to),
-            self.columns.reach.get(from..to),
-        ) else {
-            return;
-        };
-        let touches = |x: T, y: T, reach: T| {
-            let (x, y, both) = (x - arc.middle.x, y - arc.middle.y, reach + arc.reach);
-            // NaN, a slot without an arc, compares false.
-            x * x + y * y <= both * both
-        };
-        let (x_blocks, x_rest) = xs.as_chunks::<LANES>();
-        let (y_blocks, y_rest) = ys.as_chunks::<LANES>();
-        let (reach_blocks, reach_rest) = reaches.as_chunks::<LANES>();
-        let mut slot = from;
-        for ((x, y), reach) in x_blocks.iter().zip(y_blocks).zip(reach_blocks) {
-            let mut hits = 0u32;
-            for lane in 0..LANES {
-                hits |= u32::from(touches(x[lane], y[lane], reach[lane])) << lane;
+    fn scan(&self, from: usize, to: usize, arc: &Arc<T>, min_angle: &MinAngle<T>, candidate: &mut impl FnMut(usize)) {
+        for start in (from..to).step_by(BLOCK) {
+            let block = start..to.min(start + BLOCK);
+            // Most blocks have no arc nearby; only the others are asked for the angle.
+            let mut hits = self.near(block.clone(), arc);
+            if hits != 0 {
+                hits &= self.transversal(block, arc, min_angle);
             }
             while hits != 0 {
-                candidate(slot + hits.trailing_zeros() as usize);
+                candidate(start + hits.trailing_zeros() as usize);
                 hits &= hits - 1;
             }
-            slot += LANES;
-        }
-        for ((&x, &y), &reach) in x_rest.iter().zip(y_rest).zip(reach_rest) {
-            if touches(x, y, reach) {
-                candidate(slot);
-            }
-            slot += 1;
         }
     }
+
+    /// Which arcs of a block lie near enough to meet `arc`: a bit for each.
+    #[inline(always)]
+    fn near(&self, block: Range<usize>, arc: &Arc<T>) -> u64 {
+        let columns = self.columns;
+        let (xs, ys) = (part(columns.middle_x, &block), part(columns.middle_y, &block));
+        let reaches = part(columns.reach, &block);
+        let mut hits = 0;
+        for (lane, ((&x, &y), &reach)) in xs.iter().zip(ys).zip(reaches).enumerate() {
+            let (x, y, both) = (x - arc.middle.x, y - arc.middle.y, reach + arc.reach);
+            // NaN, a slot without an arc, compares false.
+            hits |= u64::from(x * x + y * y <= both * both) << lane;
+        }
+        hits
+    }
+
+    /// Which arcs' circles cross that of `arc` steeply enough: a bit for each.
+    #[inline(always)]
+    fn transversal(&self, block: Range<usize>, arc: &Arc<T>, min_angle: &MinAngle<T>) -> u64 {
+        let columns = self.columns;
+        let (xs, ys) = (part(columns.sensor_x, &block), part(columns.sensor_y, &block));
+        let radii = part(columns.radius, &block);
+        let mut hits = 0;
+        for (lane, ((&x, &y), &radius)) in xs.iter().zip(ys).zip(radii).enumerate() {
+            let between = Vector2::new(x - arc.sensor.x, y - arc.sensor.y);
+            hits |= u64::from(Triangle::new(between, arc.radius, radius).is_transversal(min_angle)) << lane;
+        }
+        hits
+    }
+}
+
+fn part<'a, T>(column: &'a [T], block: &Range<usize>) -> &'a [T] {
+    column.get(block.clone()).unwrap_or_default()
 }
 
 impl<S> LocalMap<S> {

@@ -55,9 +55,10 @@ impl<T: Scalar> Odometer<T> {
         Travel(self.travel)
     }
 
-    /// Forgets the last position: what comes next is no step.
+    /// Forgets where the path was: what comes next begins a new one.
     pub(crate) const fn lift(&mut self) {
         self.last = None;
+        self.fraction = T::ZERO;
     }
 
     pub(crate) fn shift(&mut self, by: Vector2<T>) {

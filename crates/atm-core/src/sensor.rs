@@ -83,6 +83,8 @@ impl<T: Scalar> Limits<T> {
 
 /// What a reading can be. All four take a slot in the local map; only echoes make arcs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Meaning {
     /// Something at this distance.

@@ -18,11 +18,17 @@ pub fn log_chance<T: Scalar>(within: u32, interval: T, arc_length: T) -> T {
 /// length `arc_length`: what equation (1) leaves out, that the interval was chosen after looking.
 ///
 /// Wallenstein and Neff's approximation of the scan statistic (Statistics in Medicine 6, 1987):
-/// P ≈ (n/w − N − 1) b(n; N, w) + 2 P(Bin(N, w) ≥ n), held to \[0, 1\]; 1 where w = Δ/Θ ≥ 1 or n < 2.
+/// P ≈ min(1, (n/w − N − 1) b(n; N, w) + 2 P(Bin(N, w) ≥ n)); 1 where w = Δ/Θ ≥ 1 or n < 2. The approximation is for rare
+/// clusters: where n ≤ w (N + 1), no more than are expected in one interval, its first term turns negative and the chance
+/// is all but 1, so 1 is returned.
 /// Cost: one term for each of N − n + 1 counts.
 pub fn scan_chance<T: Scalar>(within: u32, crossings: u32, interval: T, arc_length: T) -> T {
     let share = interval / arc_length;
     if within < 2 || within > crossings || !(share > T::ZERO && share < T::ONE) {
+        return T::ONE;
+    }
+    let places = T::from_count(within) / share - T::from_count(crossings) - T::ONE;
+    if places <= T::ZERO {
         return T::ONE;
     }
     let exactly = log_binomial(within, crossings, share).exponential();
@@ -30,15 +36,8 @@ pub fn scan_chance<T: Scalar>(within: u32, crossings: u32, interval: T, arc_leng
     for count in within..=crossings {
         at_least += log_binomial(count, crossings, share).exponential();
     }
-    let places = T::from_count(within) / share - T::from_count(crossings) - T::ONE;
     let chance = places * exactly + T::TWO * at_least;
-    if chance >= T::ONE {
-        T::ONE
-    } else if chance > T::ZERO {
-        chance
-    } else {
-        T::ZERO
-    }
+    if chance < T::ONE { chance } else { T::ONE }
 }
 
 /// ln b(k; n, p): k successes in n trials.

@@ -258,8 +258,9 @@ impl<T: Scalar, const S: usize, const H: usize> Storage<T> for LatestArrays<T, S
     }
 
     fn with_scratch<R>(&mut self, work: impl FnOnce(Columns<'_, T>, &mut [T]) -> R) -> R {
-        // On the stack, where it is needed for one reading at a time: 8 bytes a slot in f32.
-        let mut scratch = [[[T::ZERO; 2]; H]; S];
+        // On the stack, where it is needed for one reading at a time: 8 bytes a slot in f32. Not zeros: those a
+        // microcontroller's compiler leaves to a memset that takes four instructions for each.
+        let mut scratch = [[[T::NAN; 2]; H]; S];
         work(self.columns(), scratch.as_flattened_mut().as_flattened_mut())
     }
 }

@@ -204,7 +204,7 @@ impl Read for Pieces {
 
 /// After each record, whether the table says that it has to wait for the next.
 fn waits(pieces: &[&'static str]) -> Vec<bool> {
-    let pieces = pieces.to_vec().into_iter();
+    let pieces = Vec::from(pieces).into_iter();
     let mut table = Table::new(Box::new(Pieces(pieces)), Arc::from("pipe")).unwrap();
     let mut waits = Vec::new();
     while table.next_record(&mut |_| ()).unwrap() == Next::Record {

@@ -18,7 +18,7 @@ use atm::{
 use crate::{
     Failure, Outcome,
     args::{self, Format, Fuse},
-    command, report,
+    command, is_reader_gone, report,
 };
 
 /// Share of echoes of kind `near` above which a guessed range resolution deserves a word.
@@ -38,6 +38,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     let mut source = CsvReadings::new(input, &format, poses, command::empty_cell(&args.log), Arc::clone(&rig))?;
     let mut track = command::track(&args.log, Some(&rig))?.map(|(track, _)| track);
     let mut tables = Tables::create(args, &rig)?;
+    let counts = args.summary.as_deref().map(Output::create).transpose()?;
 
     let bar = report::progress(length, args.quiet);
     let mut progress = |bytes| bar.set_position(bytes);
@@ -45,10 +46,15 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
         pipeline::fuse(&mut source, track.as_mut(), &sensors, &settings, &mut tables, &mut progress);
     bar.finish_and_clear();
 
-    tell(args, &rig, &defaults, &summary);
+    if !matches!(&result, Err(error) if is_reader_gone(error)) {
+        tell(args, &rig, &defaults, &summary);
+    }
     let partials = tables.partials();
-    result.and_then(|()| tables.commit()).map_err(|error| unfinished(error, &partials))?;
-    write_summary(args, &summary)?;
+    let result = result.and_then(|()| tables.commit());
+    // Whatever came of the run: what was counted is true.
+    let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
+    result.map_err(|error| unfinished(error, &partials))?;
+    counted?;
     Ok(if summary.is_clean() { Outcome::Done } else { Outcome::Partly })
 }
 
@@ -144,15 +150,10 @@ fn unfinished(error: Error, partials: &[String]) -> Failure {
     }
 }
 
-fn write_summary(args: &Fuse, summary: &Summary) -> Result<(), Failure> {
-    let Some(path) = &args.summary else {
-        return Ok(());
-    };
+fn write_counts(mut output: Output, summary: &Summary) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(summary).map_err(|error| Failure::Failed(error.to_string()))?;
-    let mut output = Output::create(path)?;
     writeln!(output, "{text}").map_err(|error| output.error(error))?;
-    output.commit()?;
-    Ok(())
+    Ok(output.commit()?)
 }
 
 /// The tables that are written.

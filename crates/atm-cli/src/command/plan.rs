@@ -94,7 +94,9 @@ fn as_text(args: &Plan, numbers: &Numbers) -> String {
             text += &format!("readings     {readings:>8}      of one sensor on the way, the first included\n");
             text += &format!("reach      {}  is as far as a history of {PAPER_HISTORY} takes it\n", length(reach));
             if readings > PAPER_HISTORY {
-                text += &format!("note: a history of {PAPER_HISTORY} is too short for this distance; take --history {readings}\n");
+                text += &format!(
+                    "note: a history of {PAPER_HISTORY} is too short for this distance; take --history {readings}\n"
+                );
             }
         }
         None => text.push_str("readings            -      needs --speed and --rate\n"),

@@ -1,0 +1,92 @@
+//! A real recording: eight sonars in a corridor (Udacity's robotics course).
+//!
+//! It is looked for in `$ATM_TEST_DATA`, else in `../shared/data` beside the repository. Without it these tests say so and
+//! pass, except where `CI` is set.
+
+mod support;
+
+use std::{
+    env,
+    io::{self, Write},
+    path::PathBuf,
+};
+
+use serde_json::Value;
+use support::*;
+
+/// The log and its poses, if they are there.
+fn recording() -> Option<(String, String)> {
+    let place = env::var_os("ATM_TEST_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from);
+    let place = place.join("udacity-sonar8");
+    let files = ["measurement.txt", "poses.txt"].map(|name| place.join(name));
+    if files.iter().all(|file| file.is_file()) {
+        return Some(files.map(|file| file.to_str().expect("a path in UTF-8").to_owned()).into());
+    }
+    let missing =
+        format!("no recording in {}; set ATM_TEST_DATA to the directory that holds udacity-sonar8", place.display());
+    assert!(env::var_os("CI").is_none(), "{missing}");
+    // Straight to standard error: what a passing test prints is not shown.
+    let _ = writeln!(io::stderr(), "\n*** SKIPPED: {missing} ***");
+    None
+}
+
+fn fuse(more: &[&str]) -> Option<(Ran, Value)> {
+    let (log, poses) = recording()?;
+    let args: Vec<&str> = ["fuse", &log, "--poses", &poses, "--rig", "robond8"].iter().chain(more).copied().collect();
+    Some(with_summary(&args, ""))
+}
+
+#[test]
+fn one_command_fuses_it_and_names_every_kind() {
+    let Some((ran, summary)) = fuse(&[]) else { return };
+    let ran = ran.exits(0).says(&["median", "single", "center", "near", "pair"]);
+    assert!(!ran.stderr.contains("unusable"), "{}", ran.stderr);
+    // 413 lines of eight readings, 2,211 of them between 170 mm and 5 m.
+    assert_eq!((tally(&summary, "/readings"), tally(&summary, "/no_echo")), (413 * 8, 413 * 8 - 2211));
+    let echoes = ran.echoes();
+    assert_eq!(echoes.len() as u64 + tally(&summary, "/ignored_pairs"), 2211);
+    assert_eq!(summary["dropped"], serde_json::json!({}));
+    // Milliseconds in the file, seconds here: the first sweep has four echoes.
+    assert_eq!(echoes.iter().filter(|echo| echo.t == "1686.487").count(), 4);
+}
+
+#[test]
+fn first_echoes_stand_where_the_first_readings_say() {
+    let Some((ran, _)) = fuse(&[]) else { return };
+    // The robot stands at the origin; sensors 2, 3, 6 and 7 hear 2.32, 2.36, 2.16 and 1.19 m.
+    let bearings = [("2", -22.5, 2.32), ("3", -7.5, 2.36), ("6", 37.5, 2.16), ("7", 90.0, 1.19)];
+    let echoes = ran.echoes();
+    for (echo, (sensor, bearing, range)) in echoes.iter().zip(bearings) {
+        let (sin, cos) = f64::to_radians(bearing).sin_cos();
+        assert_eq!((echo.sensor.as_str(), echo.range, echo.kind.as_str()), (sensor, range, "center"));
+        assert_near(echo.x, range * cos, 1e-9);
+        assert_near(echo.y, range * sin, 1e-9);
+    }
+}
+
+#[test]
+fn held_values_hide_medians_and_singles_until_they_are_dropped() {
+    let (Some((_, held)), Some((ran, dropped))) = (fuse(&[]), fuse(&["--drop-held"])) else { return };
+    assert_eq!(tally(&held, "/skipped/held"), 0);
+    let skipped = tally(&dropped, "/skipped/held");
+    assert!(skipped > 1000, "{skipped}");
+    assert_eq!(skipped + tally(&dropped, "/readings"), 413 * 8);
+    ran.exits(0).says(&[&format!("{skipped} held")]);
+    for kind in ["/echoes/median", "/echoes/single"] {
+        let (before, after) = (tally(&held, kind), tally(&dropped, kind));
+        assert!(after > 2 * before, "{kind}: {before} with held values, {after} without");
+    }
+}
+
+#[test]
+fn info_says_what_it_is_and_that_values_are_held() {
+    let Some((log, poses)) = recording() else { return };
+    let ran = atm(["info", &log, "--rig", "robond8", "--poses", &poses, "--json"]).exits(0);
+    let found = ran.json();
+    assert_eq!(
+        (found["start_ns"].as_i64(), found["sensors"].as_object().map(serde_json::Map::len)),
+        (Some(1_686_487_000_000), Some(8))
+    );
+    assert_eq!(found["sensors"]["0"]["readings"], 413);
+    assert!(found["problems"].to_string().contains("--drop-held"), "{found}");
+}
