@@ -1,5 +1,5 @@
 //! Where the robot was: poses as a stream, merged with readings in time order.
-use std::f64::consts::TAU;
+use std::{collections::VecDeque, f64::consts::TAU};
 
 use crate::error::{Place, Problem, Reason, Result};
 
@@ -105,22 +105,34 @@ struct Waypoint {
     pose: Pose,
 }
 
+impl Waypoint {
+    const fn key(&self) -> (u32, i64) {
+        (self.epoch, self.t)
+    }
+}
+
+/// Poses that are read ahead for one reading, at most, and kept in case that its time was wrong.
+const LOOKAHEAD: usize = 1 << 16;
+
 /// A trajectory that is asked for poses in time order, and read only as far as needed.
 pub struct Track<P> {
     stream: P,
     max_gap: u64,
     clock: Clock,
     epoch: u32,
-    /// The latest pose before the last time asked for, and the one after it.
-    before: Option<Waypoint>,
-    ahead: Option<Waypoint>,
-    ended: bool,
+    /// The last pose before the latest time that had one, and those read since.
+    window: VecDeque<Waypoint>,
+    /// Some time had a pose already.
+    begun: bool,
+    /// The last time asked for lay beyond the lookahead.
+    gave_up: bool,
 }
 
 impl<P: PoseStream> Track<P> {
     /// A track over `stream` that answers only where there are poses within `max_gap` nanoseconds on both sides.
     pub fn new(stream: P, max_gap: u64) -> Self {
-        Self { stream, max_gap, clock: Clock::new(), epoch: 0, before: None, ahead: None, ended: false }
+        let window = VecDeque::new();
+        Self { stream, max_gap, clock: Clock::new(), epoch: 0, window, begun: false, gave_up: false }
     }
 
     /// Clock resets in the poses read so far.
@@ -131,33 +143,53 @@ impl<P: PoseStream> Track<P> {
     /// The pose at `t`, in nanoseconds, after `epoch` clock resets; the n-th epoch of the readings is that of the poses.
     ///
     /// Position is interpolated linearly, yaw the shorter way. `None` where there is no pose within the gap at or before `t` or none at
-    /// or after it. Times must not go back within an epoch, nor epochs. Unusable poses that were passed go to `problems`; errors where the
-    /// stream has one.
+    /// or after it. Times that have a pose must not go back within an epoch, nor epochs. Unusable poses that were passed go to
+    /// `problems`; errors where the stream has one.
+    ///
+    /// A single time that is wrong and far ahead does no harm: up to 65,536 poses are read for it and kept. Only where the time
+    /// after it is as far ahead are they left behind.
     pub fn pose_at(&mut self, epoch: u32, t: i64, problems: &mut dyn FnMut(Problem)) -> Result<Option<Pose>> {
-        while !self.ended {
-            match self.ahead {
-                Some(ahead) if (ahead.epoch, ahead.t) >= (epoch, t) => break,
-                Some(passed) => self.before = Some(passed),
-                None => {}
-            }
-            self.ahead = self.next_waypoint(problems)?;
-            self.ended = self.ahead.is_none();
+        let reached = self.read_up_to((epoch, t), problems)?;
+        self.gave_up = !reached;
+        let next = self.window.partition_point(|waypoint| waypoint.key() < (epoch, t));
+        let pose = self.interpolate(next, epoch, t);
+        if pose.is_some() {
+            self.begun = true;
+            self.window.drain(..next.saturating_sub(1));
         }
-        Ok(self.interpolate(epoch, t))
+        Ok(pose)
     }
 
-    fn interpolate(&self, epoch: u32, t: i64) -> Option<Pose> {
-        let ahead = self.ahead.filter(|ahead| ahead.epoch == epoch && ahead.t >= t)?;
-        if ahead.t == t {
-            return Some(ahead.pose);
+    /// Reads until there is a pose at or after `key`; `false` where that is beyond the lookahead.
+    fn read_up_to(&mut self, key: (u32, i64), problems: &mut dyn FnMut(Problem)) -> Result<bool> {
+        while self.window.back().is_none_or(|last| last.key() < key) {
+            let patient = !self.begun || self.gave_up;
+            if patient {
+                self.window.drain(..self.window.len().saturating_sub(1));
+            } else if self.window.len() > LOOKAHEAD {
+                return Ok(false);
+            }
+            match self.next_waypoint(problems)? {
+                Some(waypoint) => self.window.push_back(waypoint),
+                None => break,
+            }
         }
-        let before = self.before.filter(|before| before.epoch == epoch && before.t <= t)?;
-        let (since, until) = (t.abs_diff(before.t), ahead.t.abs_diff(t));
+        Ok(true)
+    }
+
+    /// Between the pose of this index in the window and the one before it.
+    fn interpolate(&self, next: usize, epoch: u32, t: i64) -> Option<Pose> {
+        let after = self.window.get(next).filter(|after| after.epoch == epoch)?;
+        if after.t == t {
+            return Some(after.pose);
+        }
+        let before = self.window.get(next.checked_sub(1)?).filter(|before| before.epoch == epoch)?;
+        let (since, until) = (t.abs_diff(before.t), after.t.abs_diff(t));
         if since > self.max_gap || until > self.max_gap {
             return None;
         }
-        let share = since as f64 / ahead.t.abs_diff(before.t) as f64;
-        before.pose.towards(ahead.pose, share)
+        let share = since as f64 / after.t.abs_diff(before.t) as f64;
+        before.pose.towards(after.pose, share)
     }
 
     /// The next pose in time order.

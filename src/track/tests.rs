@@ -177,3 +177,30 @@ fn a_run_out_of_order_begins_anew() {
 fn equal_times_within_a_run_are_in_order() {
     assert_eq!(ticks([9].into_iter().chain([1; 16])).last(), Some(&Tick::Reset));
 }
+
+#[test]
+fn a_time_far_ahead_does_not_use_up_the_poses() {
+    for poses in [10, 100_000] {
+        let mut track = Track::new(Stream(line(0..poses).into_iter()), S.unsigned_abs());
+        assert_eq!(x_at(&mut track, 0, S / 2), Some(0.5));
+        assert_eq!(x_at(&mut track, 0, i64::MAX), None);
+        assert_eq!(x_at(&mut track, 0, 3 * S / 2), Some(1.5), "{poses}");
+        assert_eq!(x_at(&mut track, 0, 8 * S), Some(8.0));
+    }
+}
+
+#[test]
+fn a_long_pause_of_the_readings_is_caught_up_with() {
+    let mut track = Track::new(Stream(line(0..200_000).into_iter()), S.unsigned_abs());
+    assert_eq!(x_at(&mut track, 0, S), Some(1.0));
+    // 150,000 poses are more than are read ahead for one reading: the next one shows that the time was right.
+    assert_eq!(x_at(&mut track, 0, 150_000 * S), None);
+    assert_eq!(x_at(&mut track, 0, 150_001 * S), Some(150_001.0));
+    assert_eq!(x_at(&mut track, 0, 150_002 * S), Some(150_002.0));
+}
+
+#[test]
+fn poses_that_begin_long_before_the_readings_cost_no_reading() {
+    let mut track = Track::new(Stream(line(0..200_000).into_iter()), S.unsigned_abs());
+    assert_eq!(x_at(&mut track, 0, 150_000 * S), Some(150_000.0));
+}
