@@ -320,6 +320,9 @@ impl<T: Scalar> Partners<'_, T> {
 
     #[inline(always)]
     fn scan(&self, from: usize, to: usize, arc: &Arc<T>, min_angle: &MinAngle<T>, candidate: &mut impl FnMut(usize)) {
+        if usize::BITS < 64 {
+            return self.scan_singly(from..to, arc, candidate);
+        }
         for start in (from..to).step_by(BLOCK) {
             let block = start..to.min(start + BLOCK);
             // Most blocks have no arc nearby; only the others are asked for the angle.
@@ -334,6 +337,18 @@ impl<T: Scalar> Partners<'_, T> {
         }
     }
 
+    /// The same for a microcontroller, which has no vectors to fill: each arc by itself, and no mask to shift.
+    #[inline(always)]
+    fn scan_singly(&self, slots: Range<usize>, arc: &Arc<T>, candidate: &mut impl FnMut(usize)) {
+        let columns = self.columns;
+        let (xs, ys) = (part(columns.middle_x, &slots), part(columns.middle_y, &slots));
+        for (((slot, &x), &y), &reach) in slots.clone().zip(xs).zip(ys).zip(part(columns.reach, &slots)) {
+            if is_near(arc, x, y, reach) {
+                candidate(slot);
+            }
+        }
+    }
+
     /// Which arcs of a block lie near enough to meet `arc`: a bit for each.
     #[inline(always)]
     fn near(&self, block: Range<usize>, arc: &Arc<T>) -> u64 {
@@ -342,9 +357,7 @@ impl<T: Scalar> Partners<'_, T> {
         let reaches = part(columns.reach, &block);
         let mut hits = 0;
         for (lane, ((&x, &y), &reach)) in xs.iter().zip(ys).zip(reaches).enumerate() {
-            let (x, y, both) = (x - arc.middle.x, y - arc.middle.y, reach + arc.reach);
-            // NaN, a slot without an arc, compares false.
-            hits |= u64::from(x * x + y * y <= both * both) << lane;
+            hits |= u64::from(is_near(arc, x, y, reach)) << lane;
         }
         hits
     }
@@ -362,6 +375,14 @@ impl<T: Scalar> Partners<'_, T> {
         }
         hits
     }
+}
+
+/// Whether the circle of `reach` about the middle of an arc touches that about the middle of `arc`.
+#[inline(always)]
+fn is_near<T: Scalar>(arc: &Arc<T>, x: T, y: T, reach: T) -> bool {
+    let (x, y, both) = (x - arc.middle.x, y - arc.middle.y, reach + arc.reach);
+    // NaN, a slot without an arc, compares false.
+    x * x + y * y <= both * both
 }
 
 fn part<'a, T>(column: &'a [T], block: &Range<usize>) -> &'a [T] {

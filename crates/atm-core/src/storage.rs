@@ -187,7 +187,7 @@ impl<T: Scalar> Columns<'_, T> {
 
 /// Const storage for the causal mode alone: S sensors, H readings of each.
 ///
-/// 40 bytes a slot in `f32` and 8 more of log, besides 12 a sensor: 16 sensors with H = 10 take 7.9 kB. A `static` can
+/// 40 bytes a slot in `f32` and 8 more of log, besides 16 a sensor: 16 sensors with H = 10 take 7.9 kB. A `static` can
 /// hold it. Echoes of earlier arcs need [`Arrays`].
 #[derive(Debug, Clone)]
 pub struct LatestArrays<T, const S: usize, const H: usize> {
@@ -267,7 +267,8 @@ impl<T: Scalar, const S: usize, const H: usize> Storage<T> for LatestArrays<T, S
 
 /// Const storage for every mode: S sensors, H readings of each, B · H slots a sensor.
 ///
-/// B = 1 serves `latest` and snapshots, B = 5 `settled` as well. 52 bytes a slot in `f32` and 8 more of log.
+/// B = 1 serves `latest` and snapshots, B = 5 `settled` as well. 60 bytes a slot in `f32`, 8 more of log for each of the
+/// H · S readings, and 16 a sensor.
 #[derive(Debug, Clone)]
 pub struct Arrays<T, const S: usize, const H: usize, const B: usize> {
     middle_x: [[[T; H]; B]; S],
