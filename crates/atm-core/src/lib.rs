@@ -65,6 +65,7 @@ mod estimator;
 mod fuser;
 mod local_map;
 mod median;
+mod partners;
 mod pose;
 pub mod resolution;
 mod scalar;
@@ -81,8 +82,9 @@ pub use crate::{
     error::{DomainError, Rejected},
     estimator::{Estimator, OnNone, OnTwo, ReportedArc, TransversalMedian, Verdict},
     fuser::{ArcCrossing, Arrival, Fuser, Reading, Sink},
-    local_map::{Bounds, Partners},
+    local_map::Bounds,
     median::median,
+    partners::Partners,
     pose::{Anchor, Travel},
     scalar::Scalar,
     sensor::{Beam, Limits, Meaning, Range, RangeResolution},
