@@ -1,8 +1,8 @@
 //! From a log to echoes: source → pose → fuser → sink, in one pass and bounded memory.
 
 use atm_core::{
-    ArcCrossing, Arrival, Beam, Bounds, Echo, Fuser, Isometry2, Limits, Meaning, Point2, RangeResolution, Reading,
-    Rejected, Sink, Storage, TransversalMedian, UnitComplex, Vector2,
+    ArcCrossing, Arrival, Beam, Bounds, DomainError, Echo, Fuser, Isometry2, Limits, Meaning, MinAngle, Point2,
+    RangeResolution, Reading, Rejected, Sink, Storage, TransversalMedian, UnitComplex, Vector2, resolution,
 };
 
 use crate::{
@@ -67,7 +67,7 @@ impl Defaults {
             .collect()
     }
 
-    fn complete_one(&self, sensor: &crate::rig::Sensor) -> Result<SensorModel, atm_core::DomainError> {
+    fn complete_one(&self, sensor: &crate::rig::Sensor) -> Result<SensorModel, DomainError> {
         let beam = || self.field_of_view.map_or_else(|| Beam::new(Self::FIELD_OF_VIEW), Ok);
         let resolution = || RangeResolution::new(sensor.range_resolution().unwrap_or(Self::RANGE_RESOLUTION));
         Ok(SensorModel {
@@ -84,7 +84,23 @@ impl Defaults {
     }
 }
 
-fn named(rig: &Rig, id: &str, error: atm_core::DomainError) -> Error {
+/// The angle that gives every sensor the wanted improvement at a distance in metres: the largest of theirs, and 30° where there
+/// are none (equation 2, inverse).
+///
+/// # Errors
+/// As [`resolution::min_angle_for`], of the first sensor for which there is no such angle.
+pub fn min_angle_for(improvement: f64, distance: f64, sensors: &[SensorModel]) -> Result<MinAngle<f64>, DomainError> {
+    let mut widest: Option<MinAngle<f64>> = None;
+    for sensor in sensors {
+        let angle = resolution::min_angle_for(improvement, distance, &sensor.beam, sensor.range_resolution)?;
+        if widest.is_none_or(|widest| angle.radians() > widest.radians()) {
+            widest = Some(angle);
+        }
+    }
+    Ok(widest.unwrap_or(MinAngle::PAPER))
+}
+
+fn named(rig: &Rig, id: &str, error: DomainError) -> Error {
     Error::Rig { file: rig.name().into(), message: format!("sensor {id}: {error}") }
 }
 

@@ -3,7 +3,7 @@
 use std::{io::Write, sync::Arc};
 
 use atm::{
-    core::{ArcCrossing, Echo, Kind, MinAngle, TransversalMedian, resolution},
+    core::{ArcCrossing, Echo, Kind, MinAngle, TransversalMedian},
     error::{Error, Result},
     log::{
         csv::{CsvReadings, PoseUse},
@@ -96,7 +96,9 @@ fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings, Failure> {
     let usage = |error: atm::core::DomainError| Failure::Usage(error.to_string());
     let min_angle = match (args.min_angle, args.improvement, args.at) {
         (Some(angle), ..) => angle,
-        (None, Some(improvement), Some(distance)) => wanted(improvement, distance, sensors).map_err(usage)?,
+        (None, Some(improvement), Some(distance)) => {
+            pipeline::min_angle_for(improvement, distance, sensors).map_err(usage)?
+        }
         _ => MinAngle::PAPER,
     };
     Ok(Settings {
@@ -109,18 +111,6 @@ fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings, Failure> {
         estimator: TransversalMedian { min_angle, on_none: args.on_none.into(), on_two: args.on_two.into() },
         strict: args.strict,
     })
-}
-
-/// The angle that gives every sensor the wanted improvement: the largest of theirs.
-fn wanted(improvement: f64, distance: f64, sensors: &[SensorModel]) -> Result<MinAngle<f64>, atm::core::DomainError> {
-    let mut widest = None;
-    for sensor in sensors {
-        let angle = resolution::min_angle_for(improvement, distance, &sensor.beam, sensor.range_resolution)?;
-        if widest.is_none_or(|widest: MinAngle<f64>| angle.radians() > widest.radians()) {
-            widest = Some(angle);
-        }
-    }
-    Ok(widest.unwrap_or(MinAngle::PAPER))
 }
 
 /// Says what was counted, and what deserves a word.

@@ -1,0 +1,342 @@
+//! `atm.fuse` and `atm.crossings`: the library's pipeline, from arrays to arrays.
+
+use atm::{
+    core::Kind,
+    error::{Error, Problem, Result},
+    log::{Next, Row, Source},
+    pipeline::{self, EchoSink, SensorModel, Settings},
+    summary::Summary,
+};
+use pyo3::{exceptions::PyUserWarning, prelude::*};
+
+use crate::{
+    argument::named,
+    column::Shape,
+    interrupt::Watch,
+    options::{self, Options},
+    raise,
+    readings::{Arguments, Given, Readings},
+    rig::rig as rig_of,
+    table::{Crossings, Echoes},
+};
+
+/// Readings that are handed over at once, at most.
+const MOST_IN_A_ROW: usize = 1024;
+/// Share of echoes of kind `near` above which a guessed range resolution deserves a word.
+const MANY_NEAR: f64 = 0.2;
+
+/// Readings in arrays, as a log: those of one time and pose are one record.
+struct ArraySource<'r, 'w> {
+    readings: Readings<'r>,
+    next: usize,
+    /// Since the watch was last asked.
+    unwatched: usize,
+    watch: &'w mut Watch,
+}
+
+impl ArraySource<'_, '_> {
+    /// Whether two readings belong to one record. By bits: -0.0 and 0.0 turn differently.
+    fn are_one(&self, one: usize, other: usize) -> bool {
+        let bits = |index| {
+            let pose = self.readings.pose(index);
+            (self.readings.time(index), [pose.x, pose.y, pose.yaw].map(f64::to_bits))
+        };
+        bits(one) == bits(other)
+    }
+}
+
+impl Source for ArraySource<'_, '_> {
+    fn next_row(&mut self, row: &mut Row, _problems: &mut dyn FnMut(Problem)) -> Result<Next> {
+        row.readings.clear();
+        let first = self.next;
+        if first >= self.readings.len() {
+            return Ok(Next::End);
+        }
+        if self.unwatched >= MOST_IN_A_ROW {
+            self.unwatched = 0;
+            if self.watch.is_over(|_| Ok(())) {
+                return Err(Error::Settings { message: "interrupted".into() });
+            }
+        }
+        row.t = self.readings.time(first);
+        row.pose = Some(self.readings.pose(first));
+        row.place.byte = first as u64;
+        while self.next < self.readings.len()
+            && self.next - first < MOST_IN_A_ROW
+            && (self.next == first || self.are_one(first, self.next))
+        {
+            row.readings.push(self.readings.measured(self.next));
+            self.next += 1;
+        }
+        self.unwatched += self.next - first;
+        Ok(Next::Record)
+    }
+
+    fn drained(&self) -> bool {
+        false
+    }
+
+    fn position(&self) -> u64 {
+        self.next as u64
+    }
+
+    fn has_poses(&self) -> bool {
+        true
+    }
+}
+
+/// Runs the pipeline with the interpreter let go.
+fn run(
+    py: Python<'_>,
+    readings: Readings<'_>,
+    sensors: &[SensorModel],
+    settings: &Settings,
+    sink: &mut (impl EchoSink + Send),
+) -> PyResult<Summary> {
+    let mut watch = Watch::new();
+    let (summary, result) = py.detach(|| {
+        readings.check(None)?;
+        let mut source = ArraySource { readings, next: 0, unwatched: 0, watch: &mut watch };
+        Ok::<_, PyErr>(pipeline::fuse(&mut source, None, sensors, settings, sink, &mut |_| {}))
+    })?;
+    watch.into_result()?;
+    match result {
+        Ok(()) => Ok(summary),
+        // All else was checked: a pose that is finite, and overflows where the sensor sits.
+        Err(Error::Strict { problem }) => {
+            let index = usize::try_from(problem.place.byte).unwrap_or(usize::MAX);
+            Err(readings.fault("x", index, problem.value).into())
+        }
+        // More slots than there may be: only H can be less.
+        Err(error @ Error::Settings { .. }) => Err(raise::value("history", error)),
+        Err(error) => Err(raise::library(&error)),
+    }
+}
+
+/// Says that a guessed range resolution makes many echoes near.
+pub fn warn_of_near(py: Python<'_>, summary: &Summary) -> PyResult<()> {
+    let (near, total) = (summary.echoes.get(Kind::Near), summary.echoes.total());
+    if near as f64 <= MANY_NEAR * total as f64 {
+        return Ok(());
+    }
+    let message = format!(
+        "{near} of {total} echoes are near; a range resolution of 1in was assumed, say range_resolution if the ranges are \
+         finer"
+    );
+    warn(py, &message)
+}
+
+/// Says something that is no error.
+pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
+    let message = std::ffi::CString::new(message.replace('\0', " ")).unwrap_or_default();
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)
+}
+
+/// Turns range readings into echo points: the arc-transversal median, reading by reading.
+///
+/// Parameters
+/// ----------
+/// t : array_like of float64 or int64, shape (n,)
+///     When each reading was taken, in order: float seconds (taken to the nearest nanosecond, half-even), or int nanoseconds.
+/// sensor : array_like of str or int, shape (n,)
+///     The sensors' ids. Whole numbers only where the rig's ids are exactly "0", "1", ...; else see `sensor_index`.
+/// range_ : array_like, shape (n,)
+///     What was measured, in metres. nan, inf and what lies outside the sensor's limits is a reading without an echo.
+/// x, y, yaw : array_like, shape (n,)
+///     The ROBOT's pose at each reading in a fixed frame: metres, metres, radians counter-clockwise.
+/// rig : Rig or str or os.PathLike
+///     The sensors: a :class:`Rig`, a built-in rig's name, or a TOML file.
+/// history : int
+///     H: the local map holds the last H readings of every sensor; 1 to 10000.
+/// min_angle : float, optional
+///     Crossings count from this angle on, in radians, in [1, 90] degrees. None: 30 degrees (Sec. IV-B).
+/// range_resolution : float, optional
+///     Quantisation step of the ranges, in metres; beats the rig's. None: the rig's, else 1 inch.
+/// field_of_view : float, optional
+///     Full beam, in radians, of sensors of which the rig does not say it. None: 22.5 degrees.
+/// emit : {"settled", "latest"}
+///     Each echo when its reading leaves the local map, from every arc it met; or at its arrival, from the arcs before it.
+/// on_none : {"center", "drop"}
+///     What a reading without crossings gives: the arc's centre, or nothing.
+/// on_two : {"drop", "center", "mean"}
+///     What a reading with exactly two crossings gives.
+/// max_age, max_travel : float, optional
+///     A reading leaves the local map after this time (seconds) or this much path (metres, at most 1000).
+/// min_step : float, optional
+///     Skip a reading whose sensor moved less than this since its last one in the local map, in metres.
+/// drop_held : bool
+///     Skip a reading equal to its sensor's previous one.
+/// keep : sequence of str, optional
+///     Only echoes of these kinds. None: all.
+/// sensor_index : array_like of int, shape (n,), optional
+///     Places of the sensors in the rig, from 0, instead of ids; with ``sensor=None``.
+///
+/// Returns
+/// -------
+/// numpy.ndarray
+///     One row an echo, in the order in which they are reported, with the fields ``t`` (the reading's own, float64 or int64
+///     as `t` was given), ``sensor``, ``x``, ``y`` (metres, the fixed frame), ``kind`` ("median", "single", "center", "near",
+///     "pair"), ``range`` (metres), ``azimuth`` (radians from the boresight), ``crossings``, ``resolution`` (metres along the arc)
+///     and ``significance`` (equation (1)). ``pandas.DataFrame(...)`` and ``polars.from_numpy(...)`` take it as it is.
+///
+/// Raises
+/// ------
+/// ValueError, TypeError
+///     An argument that can't be used: shape, dtype, length, an unknown sensor, a time earlier than the one before it, a pose
+///     that is not finite, an option out of its domain. The message names the argument and its first offending index.
+/// OSError
+///     The rig's file can't be read.
+///
+/// Warns
+/// -----
+/// UserWarning
+///     More than 20 % of the echoes are near, and the range resolution was a guess.
+///
+/// Notes
+/// -----
+/// The same readings give the same bits as ``atm fuse``. Contiguous and strided float64 is read in place, anything else is
+/// converted once; the arrays must not be written to meanwhile, as other threads run. Ctrl-C ends the call.
+///
+/// References
+/// ----------
+/// H. Choset, K. Nagatani, N. A. Lazar, "The Arc-Transversal Median Algorithm: A Geometric Approach to Increasing Ultrasonic
+/// Sensor Azimuth Accuracy", IEEE Transactions on Robotics and Automation 19(3), 2003.
+///
+/// Examples
+/// --------
+/// A pole at (0, 2), passed by a sensor that looks to the left:
+///
+/// >>> import atm, numpy as np
+/// >>> rig = atm.Rig.ring(count=1, radius=0.0, first_yaw=np.pi / 2, field_of_view=np.pi / 3, range_resolution=0.01)
+/// >>> x = np.linspace(-1.0, 1.0, 9)
+/// >>> echoes = atm.fuse(np.arange(9) * 0.1, np.zeros(9, int), np.hypot(x, 2.0), x, np.zeros(9), np.zeros(9), rig=rig)
+/// >>> print(echoes["kind"][4], echoes["x"][4].round(6) + 0.0, echoes["y"][4].round(6))
+/// single 0.0 2.0
+#[pyfunction]
+#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=10, min_angle=None, range_resolution=None,
+                    field_of_view=None, emit="settled", on_none="center", on_two="drop", max_age=None, max_travel=None,
+                    min_step=None, drop_held=false, keep=None, sensor_index=None))]
+#[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
+pub fn fuse<'py>(
+    py: Python<'py>,
+    t: &Bound<'py, PyAny>,
+    sensor: &Bound<'py, PyAny>,
+    range_: &Bound<'py, PyAny>,
+    x: &Bound<'py, PyAny>,
+    y: &Bound<'py, PyAny>,
+    yaw: &Bound<'py, PyAny>,
+    rig: &Bound<'py, PyAny>,
+    #[pyo3(from_py_with = options::history)] history: usize,
+    #[pyo3(from_py_with = named::min_angle)] min_angle: Option<f64>,
+    #[pyo3(from_py_with = named::range_resolution)] range_resolution: Option<f64>,
+    #[pyo3(from_py_with = named::field_of_view)] field_of_view: Option<f64>,
+    #[pyo3(from_py_with = named::emit)] emit: &str,
+    #[pyo3(from_py_with = named::on_none)] on_none: &str,
+    #[pyo3(from_py_with = named::on_two)] on_two: &str,
+    #[pyo3(from_py_with = named::max_age)] max_age: Option<f64>,
+    #[pyo3(from_py_with = named::max_travel)] max_travel: Option<f64>,
+    #[pyo3(from_py_with = named::min_step)] min_step: Option<f64>,
+    #[pyo3(from_py_with = named::drop_held)] drop_held: bool,
+    keep: Option<&Bound<'py, PyAny>>,
+    sensor_index: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index };
+    let keep = options::keep(keep)?;
+    let options = Options {
+        history,
+        min_angle,
+        range_resolution,
+        field_of_view,
+        emit,
+        on_none,
+        on_two,
+        max_age,
+        max_travel,
+        min_step,
+        drop_held,
+    };
+    let (rig, defaults, settings) = (rig_of(rig)?, options.defaults()?, options.settings()?);
+    let arguments = Arguments::new(&call, &rig, Shape::Array)?;
+    let mut echoes = Echoes::new(&rig, arguments.clock(), keep);
+    let summary = run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut echoes)?;
+    if defaults.guesses_resolution(&rig) {
+        warn_of_near(py, &summary)?;
+    }
+    echoes.into_array(py)
+}
+
+/// Every transversal crossing of the readings, one row per arc and crossing, when that arc is reported.
+///
+/// Parameters
+/// ----------
+/// t, sensor, range_, x, y, yaw, rig, history, min_angle, range_resolution, field_of_view, emit, on_none, on_two, max_age, \
+/// max_travel, min_step, drop_held, sensor_index
+///     As in :func:`fuse`.
+///
+/// Returns
+/// -------
+/// numpy.ndarray
+///     Fields ``t``, ``sensor`` (of the reported arc), ``t_other``, ``sensor_other`` (of the arc it is crossed by), ``x``, ``y``
+///     (metres, the fixed frame), ``azimuth`` (on the reported arc, radians) and ``angle`` (of the crossing, radians, in
+///     [0, pi/2]): what ``atm fuse --crossings`` writes, arcs that gave no echo included.
+///
+/// Raises
+/// ------
+/// ValueError, TypeError, OSError
+///     As :func:`fuse`.
+///
+/// Examples
+/// --------
+/// >>> import atm, numpy as np
+/// >>> rig = atm.Rig.ring(count=1, radius=0.0, first_yaw=np.pi / 2, field_of_view=np.pi / 3, range_resolution=0.01)
+/// >>> x = np.array([-0.6, 0.6])
+/// >>> found = atm.crossings(np.arange(2), np.zeros(2, int), np.hypot(x, 2.0), x, x * 0, x * 0, rig=rig)
+/// >>> len(found), float(found["y"][0].round(6))
+/// (2, 2.0)
+#[pyfunction]
+#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=10, min_angle=None, range_resolution=None,
+                    field_of_view=None, emit="settled", on_none="center", on_two="drop", max_age=None, max_travel=None,
+                    min_step=None, drop_held=false, sensor_index=None))]
+#[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
+pub fn crossings<'py>(
+    py: Python<'py>,
+    t: &Bound<'py, PyAny>,
+    sensor: &Bound<'py, PyAny>,
+    range_: &Bound<'py, PyAny>,
+    x: &Bound<'py, PyAny>,
+    y: &Bound<'py, PyAny>,
+    yaw: &Bound<'py, PyAny>,
+    rig: &Bound<'py, PyAny>,
+    #[pyo3(from_py_with = options::history)] history: usize,
+    #[pyo3(from_py_with = named::min_angle)] min_angle: Option<f64>,
+    #[pyo3(from_py_with = named::range_resolution)] range_resolution: Option<f64>,
+    #[pyo3(from_py_with = named::field_of_view)] field_of_view: Option<f64>,
+    #[pyo3(from_py_with = named::emit)] emit: &str,
+    #[pyo3(from_py_with = named::on_none)] on_none: &str,
+    #[pyo3(from_py_with = named::on_two)] on_two: &str,
+    #[pyo3(from_py_with = named::max_age)] max_age: Option<f64>,
+    #[pyo3(from_py_with = named::max_travel)] max_travel: Option<f64>,
+    #[pyo3(from_py_with = named::min_step)] min_step: Option<f64>,
+    #[pyo3(from_py_with = named::drop_held)] drop_held: bool,
+    sensor_index: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index };
+    let options = Options {
+        history,
+        min_angle,
+        range_resolution,
+        field_of_view,
+        emit,
+        on_none,
+        on_two,
+        max_age,
+        max_travel,
+        min_step,
+        drop_held,
+    };
+    let (rig, defaults, settings) = (rig_of(rig)?, options.defaults()?, options.settings()?);
+    let arguments = Arguments::new(&call, &rig, Shape::Array)?;
+    let mut crossings = Crossings::new(&rig, arguments.clock());
+    run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut crossings)?;
+    crossings.into_array(py)
+}

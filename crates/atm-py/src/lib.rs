@@ -1,0 +1,56 @@
+//! The Python package `atm`: converts and raises, nothing else. The numbers are the library's.
+
+// What is written over a Python item is its docstring: numpydoc, not rustdoc.
+#![allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
+
+mod argument;
+mod column;
+mod file;
+mod fuse;
+mod fuser;
+mod interrupt;
+mod job;
+mod options;
+mod plan;
+mod raise;
+mod readings;
+mod rig;
+mod sensors;
+mod table;
+mod time;
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+/// Runs the command line `argv`, the program's name first, and returns the exit status.
+#[pyfunction]
+fn _main(py: Python<'_>, argv: Vec<OsString>) -> u8 {
+    py.detach(|| atm_cli::run(argv))
+}
+
+/// The native part of the package atm.
+#[pymodule]
+mod _atm {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::{
+        _main,
+        file::fuse_file,
+        fuse::{crossings, fuse},
+        fuser::{PyEcho, PyFuser},
+        plan::plan,
+        rig::{_restore_rig, _restore_sensor, PyRig, PySensor},
+    };
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        for name in ["crossings", "fuse", "fuse_file", "plan"] {
+            // Where they are for those who use them.
+            module.getattr(name)?.setattr("__module__", "atm")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,140 @@
+//! How to fuse, as Python says it.
+
+use atm::{
+    core::{Beam, Bounds, Kind, MinAngle, OnNone, OnTwo, RangeResolution, TransversalMedian, Travel},
+    pipeline::{Defaults, Emit, SensorModel, Settings},
+    rig::Rig,
+    storage::LatestSlots,
+};
+use pyo3::{prelude::*, types::PyString};
+
+use crate::{argument, raise, time};
+
+/// The options that `fuse`, `crossings` and `Fuser` share.
+pub struct Options<'a> {
+    pub history: usize,
+    pub min_angle: Option<f64>,
+    pub range_resolution: Option<f64>,
+    pub field_of_view: Option<f64>,
+    pub emit: &'a str,
+    pub on_none: &'a str,
+    pub on_two: &'a str,
+    pub max_age: Option<f64>,
+    pub max_travel: Option<f64>,
+    pub min_step: Option<f64>,
+    pub drop_held: bool,
+}
+
+impl Options<'_> {
+    /// What holds where the rig says nothing.
+    pub fn defaults(&self) -> PyResult<Defaults> {
+        let beam = self.field_of_view.map(Beam::new).transpose();
+        let resolution = self.range_resolution.map(RangeResolution::new).transpose();
+        Ok(Defaults {
+            field_of_view: beam.map_err(|error| raise::value("field_of_view", error))?,
+            range_resolution: resolution.map_err(|error| raise::value("range_resolution", error))?,
+        })
+    }
+
+    /// How the library is to fuse.
+    pub fn settings(&self) -> PyResult<Settings> {
+        Ok(Settings {
+            emit: emit(self.emit)?,
+            history: self.history,
+            bounds: self.bounds()?,
+            estimator: TransversalMedian {
+                min_angle: match self.min_angle {
+                    Some(radians) => MinAngle::new(radians).map_err(|error| {
+                        raise::value("min_angle", format_args!("{} rad: {error}", argument::float(radians)))
+                    })?,
+                    None => MinAngle::PAPER,
+                },
+                on_none: on_none(self.on_none)?,
+                on_two: on_two(self.on_two)?,
+            },
+            // Everything was checked: what can't be used all the same must not be lost silently.
+            strict: true,
+        })
+    }
+
+    fn bounds(&self) -> PyResult<Bounds<f64>> {
+        let bounds = Bounds::NONE.with_held_dropped(self.drop_held);
+        bounded(bounds, self.max_age.map(|age| max_age("max_age", age)).transpose()?, self.max_travel, self.min_step)
+    }
+}
+
+/// The bounds on the local map; lengths in metres.
+pub fn bounded(
+    mut bounds: Bounds<f64>,
+    max_age: Option<u64>,
+    max_travel: Option<f64>,
+    min_step: Option<f64>,
+) -> PyResult<Bounds<f64>> {
+    if let Some(age) = max_age {
+        bounds = bounds.with_max_age(age);
+    }
+    if let Some(metres) = max_travel {
+        let travel = Travel::from_metres(metres).map_err(|error| raise::value("max_travel", error))?;
+        bounds = bounds.with_max_travel(travel);
+    }
+    match min_step {
+        Some(metres) => bounds.with_min_step(metres).map_err(|error| raise::value("min_step", error)),
+        None => Ok(bounds),
+    }
+}
+
+/// A time in seconds, above zero, as nanoseconds.
+pub fn max_age(argument: &str, seconds: f64) -> PyResult<u64> {
+    let nanoseconds = time::nanoseconds(seconds).and_then(|age| u64::try_from(age).ok()).filter(|age| *age > 0);
+    nanoseconds.ok_or_else(|| raise::value(argument, format_args!("{seconds} s is no time above zero")))
+}
+
+/// H.
+pub fn history(value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let most = LatestSlots::<f64>::MAX_HISTORY;
+    let history = argument::whole("history", value)?;
+    if (1..=most).contains(&history) {
+        return Ok(history);
+    }
+    Err(raise::value("history", format_args!("{value} is no whole number from 1 to {most}")))
+}
+
+/// When echoes are reported.
+pub fn emit(word: &str) -> PyResult<Emit> {
+    argument::choice("emit", word, &[("settled", Emit::Settled), ("latest", Emit::Latest)])
+}
+
+/// What no crossing gives.
+pub fn on_none(word: &str) -> PyResult<OnNone> {
+    argument::choice("on_none", word, &[("center", OnNone::Center), ("drop", OnNone::Drop)])
+}
+
+/// What two crossings give.
+pub fn on_two(word: &str) -> PyResult<OnTwo> {
+    argument::choice("on_two", word, &[("drop", OnTwo::Drop), ("center", OnTwo::Center), ("mean", OnTwo::Mean)])
+}
+
+/// The kinds to keep: a list of words, or one text with commas between them.
+pub fn keep(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<Kind>>> {
+    let Some(value) = value else { return Ok(None) };
+    let words: Vec<String> = if value.is_instance_of::<PyString>() {
+        value.extract::<String>()?.split(',').map(|word| word.trim().to_owned()).collect()
+    } else {
+        let wrong = |name: &str, item: &Bound<'_, PyAny>| {
+            raise::kind(name, format_args!("expected kinds, found {}", argument::shown(item)))
+        };
+        let items = value.try_iter().map_err(|_| wrong("keep", value))?;
+        let word = |(index, item): (usize, PyResult<Bound<'_, PyAny>>)| {
+            let item = item?;
+            item.extract().map_err(|_| wrong(&format!("keep[{index}]"), &item))
+        };
+        items.enumerate().map(word).collect::<PyResult<_>>()?
+    };
+    let kinds = Kind::ALL.map(|kind| (kind.name(), kind));
+    words.iter().map(|word| argument::choice("keep", word, &kinds)).collect::<PyResult<_>>().map(Some)
+}
+
+/// The rig's sensors, completed.
+pub fn models(rig: &Rig, defaults: &Defaults) -> PyResult<Vec<SensorModel>> {
+    defaults.complete(rig).map_err(|error| raise::library(&error))
+}

@@ -1,0 +1,199 @@
+//! Echoes and crossings as structured arrays: the columns of the command's tables.
+
+use std::iter;
+
+use atm::{
+    core::{ArcCrossing, Echo, Kind},
+    error::Result,
+    pipeline::EchoSink,
+    rig::Rig,
+};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::time::Clock;
+
+/// Characters of the longest kind's name.
+const KIND_WIDTH: usize = 6;
+
+/// A text as numpy's `U` holds it: four bytes a character, zeros behind.
+fn wide(text: &str, width: usize) -> Vec<u8> {
+    text.chars().map(u32::from).chain(iter::repeat(0)).take(width).flat_map(u32::to_ne_bytes).collect()
+}
+
+/// Rows of one table, byte by byte as numpy has them.
+struct Rows {
+    bytes: Vec<u8>,
+    clock: Clock,
+    /// The sensors' ids, all of one width.
+    ids: Vec<Vec<u8>>,
+    id_width: usize,
+}
+
+impl Rows {
+    fn new(rig: &Rig, clock: Clock) -> Self {
+        let ids = || rig.sensors().iter().map(|sensor| sensor.id());
+        let id_width = ids().map(|id| id.chars().count()).max().unwrap_or(0).max(1);
+        Self { bytes: Vec::new(), clock, ids: ids().map(|id| wide(id, id_width)).collect(), id_width }
+    }
+
+    #[inline]
+    fn time(&mut self, ns: i64) {
+        self.bytes.extend_from_slice(&self.clock.bytes(ns));
+    }
+
+    #[inline]
+    fn id(&mut self, sensor: u16) {
+        // Every sensor of the fuser is one of the rig.
+        if let Some(id) = self.ids.get(usize::from(sensor)) {
+            self.bytes.extend_from_slice(id);
+        }
+    }
+
+    #[inline]
+    fn float(&mut self, value: f64) {
+        self.bytes.extend_from_slice(&value.to_ne_bytes());
+    }
+
+    /// The rows as a structured array, without copying them. `columns` are names and types; `id` and `time` are filled in.
+    fn into_array<'py>(self, py: Python<'py>, columns: &[(&str, Type)]) -> PyResult<Bound<'py, PyAny>> {
+        let time = if self.clock == Clock::Seconds { "f8" } else { "i8" };
+        let fields: Vec<(&str, String)> = columns
+            .iter()
+            .map(|&(name, kind)| {
+                let code = match kind {
+                    Type::Time => time.to_owned(),
+                    Type::Id => format!("U{}", self.id_width),
+                    Type::Kind => format!("U{KIND_WIDTH}"),
+                    Type::Float => "f8".to_owned(),
+                    Type::Count => "u4".to_owned(),
+                };
+                (name, code)
+            })
+            .collect();
+        let dtype = py.import("numpy")?.call_method1("dtype", (fields,))?;
+        PyArray1::from_vec(py, self.bytes).call_method1("view", (dtype,))
+    }
+}
+
+/// What a column holds.
+#[derive(Clone, Copy)]
+enum Type {
+    Time,
+    Id,
+    Kind,
+    Float,
+    Count,
+}
+
+/// The echoes of a run.
+pub struct Echoes {
+    rows: Rows,
+    kinds: [Vec<u8>; Kind::ALL.len()],
+    /// Kinds to keep; all where there are none given.
+    keep: Option<Vec<Kind>>,
+}
+
+impl Echoes {
+    /// An empty table.
+    pub fn new(rig: &Rig, clock: Clock, keep: Option<Vec<Kind>>) -> Self {
+        Self { rows: Rows::new(rig, clock), kinds: Kind::ALL.map(|kind| wide(kind.name(), KIND_WIDTH)), keep }
+    }
+
+    /// The table as numpy has it.
+    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let columns = [
+            ("t", Type::Time),
+            ("sensor", Type::Id),
+            ("x", Type::Float),
+            ("y", Type::Float),
+            ("kind", Type::Kind),
+            ("range", Type::Float),
+            ("azimuth", Type::Float),
+            ("crossings", Type::Count),
+            ("resolution", Type::Float),
+            ("significance", Type::Float),
+        ];
+        self.rows.into_array(py, &columns)
+    }
+}
+
+impl EchoSink for Echoes {
+    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
+        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
+            return Ok(false);
+        }
+        let rows = &mut self.rows;
+        rows.time(echo.t);
+        rows.id(echo.sensor);
+        rows.float(echo.position.x);
+        rows.float(echo.position.y);
+        if let Some((_, kind)) = Kind::ALL.into_iter().zip(&self.kinds).find(|(kind, _)| *kind == echo.kind) {
+            rows.bytes.extend_from_slice(kind);
+        }
+        rows.float(echo.range);
+        rows.float(echo.azimuth());
+        rows.bytes.extend_from_slice(&echo.crossings.to_ne_bytes());
+        rows.float(echo.resolution);
+        rows.float(echo.significance());
+        Ok(true)
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// The crossings of a run.
+pub struct Crossings(Rows);
+
+impl Crossings {
+    /// An empty table.
+    pub fn new(rig: &Rig, clock: Clock) -> Self {
+        Self(Rows::new(rig, clock))
+    }
+
+    /// The table as numpy has it.
+    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let columns = [
+            ("t", Type::Time),
+            ("sensor", Type::Id),
+            ("t_other", Type::Time),
+            ("sensor_other", Type::Id),
+            ("x", Type::Float),
+            ("y", Type::Float),
+            ("azimuth", Type::Float),
+            ("angle", Type::Float),
+        ];
+        self.0.into_array(py, &columns)
+    }
+}
+
+impl EchoSink for Crossings {
+    fn echo(&mut self, _echo: &Echo<f64>) -> Result<bool> {
+        Ok(false)
+    }
+
+    fn wants_crossings(&self) -> bool {
+        true
+    }
+
+    fn crossings(&mut self, crossings: &[ArcCrossing<f64>]) -> Result<()> {
+        for crossing in crossings {
+            let rows = &mut self.0;
+            rows.time(crossing.t);
+            rows.id(crossing.sensor);
+            rows.time(crossing.t_other);
+            rows.id(crossing.sensor_other);
+            rows.float(crossing.position.x);
+            rows.float(crossing.position.y);
+            rows.float(crossing.bearing.azimuth());
+            rows.float(crossing.angle);
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
