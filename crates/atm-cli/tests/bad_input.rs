@@ -260,6 +260,8 @@ fn mcap_is_refused_with_a_clear_message() {
                 .says(&[&log, "MCAP is not supported yet"])
                 .writes_nothing();
         }
+        // A recording says itself which sensors made it: nobody is sent to look for a rig.
+        atm(["fuse", &log]).exits(1).says(&[&log, "MCAP is not supported yet"]);
     }
     fuse_text(bytes, &[]).exits(1).says(&["standard input", "MCAP is not supported yet"]);
     fuse_sample(&["--from", "mcap"]).exits(1).says(&[SAMPLE, "MCAP"]);

@@ -85,7 +85,7 @@ impl<T: Scalar> Arc<T> {
 
 /// A direction relative to a boresight, as a unit vector; counter-clockwise positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Bearing<T> {
     /// Cosine of the azimuth, never negative.

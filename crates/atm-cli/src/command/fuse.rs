@@ -27,8 +27,9 @@ const MANY_NEAR: f64 = 0.2;
 /// Runs the command.
 pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     check_outputs(args)?;
-    let rig = command::rig(&args.log)?.ok_or_else(no_rig)?;
+    // The log first: whether a rig is needed depends on what it is.
     let input = command::open(&args.input, args.from)?;
+    let rig = command::rig(&args.log)?.ok_or_else(no_rig)?;
     let length = input.length;
     let defaults = Defaults { field_of_view: Some(args.log.fov), range_resolution: args.range_resolution };
     let sensors = defaults.complete(&rig)?;
