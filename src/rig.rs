@@ -12,6 +12,7 @@ use std::{
     fs,
     io::{self, Read},
     path::Path,
+    sync::Arc,
 };
 
 use nalgebra::{Isometry2, Translation2, UnitComplex};
@@ -154,7 +155,8 @@ pub struct Rig {
     name: String,
     sensors: Vec<Sensor>,
     log: Option<LogFormats>,
-    by_id: HashMap<String, u16>,
+    ids: Vec<Arc<str>>,
+    by_id: HashMap<Arc<str>, u16>,
 }
 
 impl Rig {
@@ -169,13 +171,14 @@ impl Rig {
         if sensors.is_empty() || sensors.len() > MAX_SENSORS {
             return Err(rig_error(&name, format!("{} sensors: must be 1 to {MAX_SENSORS}", sensors.len())));
         }
+        let ids: Vec<Arc<str>> = sensors.iter().map(|sensor| Arc::from(sensor.id())).collect();
         let mut by_id = HashMap::with_capacity(sensors.len());
-        for (index, sensor) in (0..=u16::MAX).zip(&sensors) {
-            if by_id.insert(sensor.id.clone(), index).is_some() {
-                return Err(rig_error(&name, format!("two sensors have the id `{}`", sensor.id)));
+        for (index, id) in (0..=u16::MAX).zip(&ids) {
+            if by_id.insert(id.clone(), index).is_some() {
+                return Err(rig_error(&name, format!("two sensors have the id `{id}`")));
             }
         }
-        Ok(Self { name, sensors, log: None, by_id })
+        Ok(Self { name, sensors, log: None, ids, by_id })
     }
 
     /// A rig named `ring`: sensors evenly on a circle of `radius` metres, looking outwards.
@@ -239,6 +242,11 @@ impl Rig {
     /// The sensors, in the order of their indices; at least one.
     pub fn sensors(&self) -> &[Sensor] {
         &self.sensors
+    }
+
+    /// The sensors' ids, in the order of their indices.
+    pub fn ids(&self) -> &[Arc<str>] {
+        &self.ids
     }
 
     /// How a foreign table of this robot is written; `None` where it is not foreign.

@@ -3,7 +3,7 @@
 use atm_core::{Columns, LOG_BLOCKS, Ring, SETTLED_BLOCKS, Scalar, SettledStorage, SnapshotStorage, Storage};
 use thiserror::Error;
 
-/// Storage on the heap, `B` · H slots for each sensor: allocated once, never grown.
+/// Storage on the heap, `B` · H slots for each sensor: grown only where sensors are added.
 #[derive(Debug, Clone)]
 pub struct Slots<T, const B: usize> {
     history: usize,
@@ -61,6 +61,36 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
     /// # Errors
     /// `history` not in 1..=10,000, `sensors` not in 1..=65,535, or more than 2²⁵ slots together.
     pub fn new(sensors: usize, history: usize) -> Result<Self, StorageError> {
+        let mut slots = Self {
+            history,
+            middle_x: Vec::new(),
+            middle_y: Vec::new(),
+            reach: Vec::new(),
+            sensor_x: Vec::new(),
+            sensor_y: Vec::new(),
+            radius: Vec::new(),
+            field_of_view: Vec::new(),
+            range_resolution: Vec::new(),
+            t: Vec::new(),
+            travel: Vec::new(),
+            arrival: Vec::new(),
+            departure: Vec::new(),
+            log: Vec::new(),
+            rings: Vec::new(),
+            scratch: Vec::new(),
+        };
+        slots.grow(sensors)?;
+        Ok(slots)
+    }
+
+    /// Makes room for `sensors` in all; those it has keep their place. Fewer than it has change nothing.
+    ///
+    /// Inside a fuser, through [`atm_core::Fuser::grow`] alone.
+    ///
+    /// # Errors
+    /// As [`Slots::new`]; then nothing has changed.
+    pub fn grow(&mut self, sensors: usize) -> Result<(), StorageError> {
+        let history = self.history;
         if !(1..=Self::MAX_HISTORY).contains(&history) {
             return Err(StorageError::History(history));
         }
@@ -71,25 +101,29 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
         if slots > Self::MAX_SLOTS {
             return Err(StorageError::TooLarge { sensors, history });
         }
-        let blank = vec![T::NAN; slots];
-        Ok(Self {
-            history,
-            middle_x: blank.clone(),
-            middle_y: blank.clone(),
-            reach: blank.clone(),
-            sensor_x: blank.clone(),
-            sensor_y: blank.clone(),
-            radius: blank.clone(),
-            field_of_view: blank.clone(),
-            range_resolution: blank,
-            t: vec![0; slots],
-            travel: vec![0; slots],
-            arrival: vec![0; slots],
-            departure: vec![0; slots],
-            log: vec![0; LOG_BLOCKS * sensors * history],
-            rings: vec![Ring::EMPTY; sensors],
-            scratch: vec![T::ZERO; 2 * slots],
-        })
+        if sensors <= self.rings.len() {
+            return Ok(());
+        }
+        for column in [
+            &mut self.middle_x,
+            &mut self.middle_y,
+            &mut self.reach,
+            &mut self.sensor_x,
+            &mut self.sensor_y,
+            &mut self.radius,
+            &mut self.field_of_view,
+            &mut self.range_resolution,
+        ] {
+            column.resize(slots, T::NAN);
+        }
+        self.t.resize(slots, 0);
+        for column in [&mut self.travel, &mut self.arrival, &mut self.departure] {
+            column.resize(slots, 0);
+        }
+        self.log.resize(LOG_BLOCKS * sensors * history, 0);
+        self.rings.resize(sensors, Ring::EMPTY);
+        self.scratch.resize(2 * slots, T::ZERO);
+        Ok(())
     }
 
     #[inline]

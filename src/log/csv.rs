@@ -50,7 +50,10 @@ pub trait SensorNames {
     fn index(&mut self, id: &str) -> Option<u16>;
 
     /// All ids in order of index, where they are known before the log is read.
-    fn known(&self) -> Option<Vec<String>>;
+    fn known(&self) -> Option<&[Arc<str>]>;
+
+    /// The ids known so far, in order of index.
+    fn ids(&self) -> &[Arc<str>];
 }
 
 /// The sensors of a rig.
@@ -59,8 +62,12 @@ impl SensorNames for Arc<Rig> {
         self.index_of(id)
     }
 
-    fn known(&self) -> Option<Vec<String>> {
-        Some(self.sensors().iter().map(|sensor| sensor.id().to_owned()).collect())
+    fn known(&self) -> Option<&[Arc<str>]> {
+        Some(Rig::ids(self))
+    }
+
+    fn ids(&self) -> &[Arc<str>] {
+        Rig::ids(self)
     }
 }
 
@@ -69,13 +76,6 @@ impl SensorNames for Arc<Rig> {
 pub struct Discover {
     ids: Vec<Arc<str>>,
     indices: HashMap<Arc<str>, u16>,
-}
-
-impl Discover {
-    /// The ids found so far, by index.
-    pub fn ids(&self) -> &[Arc<str>] {
-        &self.ids
-    }
 }
 
 impl SensorNames for Discover {
@@ -93,8 +93,12 @@ impl SensorNames for Discover {
         Some(index)
     }
 
-    fn known(&self) -> Option<Vec<String>> {
+    fn known(&self) -> Option<&[Arc<str>]> {
         None
+    }
+
+    fn ids(&self) -> &[Arc<str>] {
+        &self.ids
     }
 }
 
@@ -176,6 +180,7 @@ impl<N: SensorNames> CsvReadings<N> {
         let record = check_width(&self.table, self.width)?;
         let time = record.get(self.time).unwrap_or_default();
         row.t = stamp::parse(time, self.format.time_shift).ok_or_else(|| Fault::cell(Reason::BadNumber, "t", time))?;
+        row.log_time = row.t;
         row.pose = self.pose.as_ref().map(|pose| pose.read(record)).transpose()?;
         match &self.layout {
             Layout::Long { sensor, range } => {
@@ -257,11 +262,15 @@ impl<N: SensorNames> Source for CsvReadings<N> {
     fn has_poses(&self) -> bool {
         self.pose.is_some()
     }
+
+    fn ids(&self) -> &[Arc<str>] {
+        self.names.ids()
+    }
 }
 
 /// Finds out the layout, and the column of the time.
 fn layout(columns: &Columns, names: &mut impl SensorNames) -> Result<(usize, Layout)> {
-    let known = names.known();
+    let known = names.known().map(<[_]>::to_vec);
     let (sensor, range) = (columns.find("sensor")?, columns.find("range")?);
     let layout = match (sensor, range) {
         (Some(sensor), Some(range)) => Layout::Long { sensor, range },
@@ -274,12 +283,12 @@ fn layout(columns: &Columns, names: &mut impl SensorNames) -> Result<(usize, Lay
     Ok((time, layout))
 }
 
-fn is_known(known: &Option<Vec<String>>, id: &str) -> bool {
-    known.iter().flatten().any(|known| known == id)
+fn is_known(known: &Option<Vec<Arc<str>>>, id: &str) -> bool {
+    known.iter().flatten().any(|known| **known == *id)
 }
 
 /// The sensors of a wide table and their columns.
-fn wide(columns: &Columns, names: &mut impl SensorNames, known: Option<Vec<String>>) -> Result<Vec<(u16, usize)>> {
+fn wide(columns: &Columns, names: &mut impl SensorNames, known: Option<Vec<Arc<str>>>) -> Result<Vec<(u16, usize)>> {
     let mut sensors = Vec::new();
     let mut found = HashSet::new();
     for (column, name) in columns.names().iter().enumerate() {
@@ -300,7 +309,7 @@ fn wide(columns: &Columns, names: &mut impl SensorNames, known: Option<Vec<Strin
         let message = "neither a long table (`t`, `sensor`, `range`) nor a wide one (`t` and a column per sensor)";
         return Err(columns.error(message));
     }
-    let missing: Vec<_> = known.iter().flatten().filter(|id| !found.contains(id.as_str())).collect();
+    let missing: Vec<_> = known.iter().flatten().filter(|id| !found.contains(&***id)).collect();
     if !missing.is_empty() {
         let missing = list(&missing);
         let message = format!("no column for the sensors {missing}: another rig's log, or columns are missing");

@@ -11,6 +11,8 @@ pub mod table;
 
 use std::{fs, io, sync::Arc};
 
+use atm_core::{Beam, Isometry2, Limits, RangeResolution};
+
 use crate::{
     error::{Error, Place, Problem, Result},
     track::Pose,
@@ -27,15 +29,33 @@ pub enum Next {
     End,
 }
 
+/// Where a reading was taken from, and what could be seen from there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// The SENSOR's pose in the fixed frame, boresight along +x.
+    pub pose: Isometry2<f64>,
+    /// Between which distances the reading is an echo.
+    pub limits: Limits<f64>,
+    /// The beam.
+    pub beam: Beam<f64>,
+    /// The range resolution.
+    pub range_resolution: RangeResolution<f64>,
+}
+
 /// One record of a log: the readings of one instant, and where the robot was. Reused from record to record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// Time in nanoseconds.
+    /// Time of the readings in nanoseconds.
     pub t: i64,
+    /// Time at which the record was logged, in nanoseconds; `t` where the log does not say.
+    pub log_time: i64,
     /// Pose in the log's fixed frame; `None` where the poses aren't taken from this log.
     pub pose: Option<Pose>,
     /// Sensor index and range in metres, in the order of the log. NaN and ±Inf are readings without an echo.
     pub readings: Vec<(u16, f64)>,
+    /// One for each of `readings` where the log says itself where its sensors were and what they saw; else empty, and that
+    /// follows from `pose` and the sensors' models.
+    pub views: Vec<View>,
     /// Empty cells that were skipped: sensors that did not fire.
     pub empty: u64,
     /// Where the record begins.
@@ -45,7 +65,7 @@ pub struct Row {
 impl Default for Row {
     fn default() -> Self {
         let place = Place { file: Arc::from(""), line: 0, byte: 0 };
-        Self { t: 0, pose: None, readings: Vec::new(), empty: 0, place }
+        Self { t: 0, log_time: 0, pose: None, readings: Vec::new(), views: Vec::new(), empty: 0, place }
     }
 }
 
@@ -65,6 +85,9 @@ pub trait Source {
 
     /// Whether the rows carry poses.
     fn has_poses(&self) -> bool;
+
+    /// The ids of the sensors known so far, in order of their indices; more may become known with any record.
+    fn ids(&self) -> &[Arc<str>];
 }
 
 /// A file (or standard input) that was opened for reading.

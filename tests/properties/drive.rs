@@ -75,6 +75,26 @@ impl Drive {
         SettledSlots::new(usize::from(SENSORS), self.history).expect("small")
     }
 
+    /// The same drive on a storage that begins with one sensor and grows as more are heard.
+    pub fn run_growing(&self, settled: bool) -> Reports {
+        let (storage, mut known) = (SettledSlots::new(1, self.history).expect("small"), 1);
+        let mut fuser = match settled {
+            true => Fuser::settled(self.estimator, self.bounds, storage),
+            false => Fuser::latest(self.estimator, self.bounds, storage),
+        };
+        let mut reports = Reports::default();
+        for reading in &self.readings {
+            let needed = usize::from(reading.sensor) + 1;
+            if needed > known {
+                fuser.grow(|storage| storage.grow(needed).expect("small"));
+                known = needed;
+            }
+            reports.push(&mut fuser, reading);
+        }
+        fuser.finish(&mut reports);
+        reports
+    }
+
     pub fn latest(&self) -> Fuser<f64, SettledSlots<f64>> {
         Fuser::latest(self.estimator, self.bounds, self.storage())
     }

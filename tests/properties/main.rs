@@ -76,6 +76,13 @@ proptest! {
     }
 
     #[test]
+    fn sensors_that_become_known_on_the_way_change_nothing(drive in drive()) {
+        for settled in [false, true] {
+            prop_assert_eq!(drive.run_growing(settled), drive.run(settled));
+        }
+    }
+
+    #[test]
     fn mirror_flips_azimuths_and_nothing_else(drive in drive()) {
         let glass = drive.with_each(mirrored);
         for settled in [false, true] {

@@ -180,6 +180,13 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         self.latest = None;
     }
 
+    /// Lets the storage grow: `grow` may add sensors behind those it has, and may not move or lose what it holds.
+    pub fn grow(&mut self, grow: impl FnOnce(&mut S)) {
+        self.map.unroll_log();
+        grow(&mut self.map.storage);
+        self.map.reroll_log();
+    }
+
     /// Moves the origin of the fixed frame to `by`: every position that is held is reduced by it, in metres.
     ///
     /// For single precision far from the origin; see [`crate::Anchor`].

@@ -228,6 +228,26 @@ impl<S> LocalMap<S> {
         }
     }
 
+    /// Brings the log of arrivals in order, the newest at its end, so that it can be made longer.
+    pub(crate) fn unroll_log<T: Scalar>(&mut self)
+    where
+        S: Storage<T>,
+    {
+        let log = self.storage.columns().log;
+        log.rotate_left(self.log_head.min(log.len()));
+        self.log_head = log.len();
+    }
+
+    /// Goes on behind the newest arrival of an unrolled log, which may be longer by now.
+    pub(crate) fn reroll_log<T: Scalar>(&mut self)
+    where
+        S: Storage<T>,
+    {
+        if self.log_head >= self.storage.columns().log.len() {
+            self.log_head = 0;
+        }
+    }
+
     /// Moves the origin of the fixed frame.
     pub(crate) fn shift<T: Scalar>(&mut self, by: Vector2<T>)
     where

@@ -1,5 +1,7 @@
 //! `atm.fuse` and `atm.crossings`: the library's pipeline, from arrays to arrays.
 
+use std::sync::Arc;
+
 use atm::{
     core::Kind,
     error::{Error, Problem, Result},
@@ -59,6 +61,7 @@ impl Source for ArraySource<'_, '_> {
             }
         }
         row.t = self.readings.time(first);
+        row.log_time = row.t;
         row.pose = Some(self.readings.pose(first));
         row.place.byte = first as u64;
         while self.next < self.readings.len()
@@ -82,6 +85,11 @@ impl Source for ArraySource<'_, '_> {
 
     fn has_poses(&self) -> bool {
         true
+    }
+
+    /// They are the rig's, and all known beforehand.
+    fn ids(&self) -> &[Arc<str>] {
+        &[]
     }
 }
 

@@ -181,6 +181,10 @@ impl Source for Watched<'_> {
     fn has_poses(&self) -> bool {
         self.log.has_poses()
     }
+
+    fn ids(&self) -> &[Arc<str>] {
+        self.log.ids()
+    }
 }
 
 /// All that a run needs.

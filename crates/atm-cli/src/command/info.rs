@@ -34,8 +34,8 @@ const MANY_HELD: f64 = 0.2;
 pub fn run(args: &Info) -> Result<Outcome, Failure> {
     let rig = command::rig(&args.log)?;
     let findings = match &rig {
-        Some(rig) => find(args, Some(rig), Arc::clone(rig), |rig| ids(rig))?,
-        None => find(args, None, Discover::default(), |names| names.ids().iter().map(ToString::to_string).collect())?,
+        Some(rig) => find(args, Some(rig), Arc::clone(rig))?,
+        None => find(args, None, Discover::default())?,
     };
     let problems = problems(&findings);
     let text = if args.json { as_json(&findings, &problems) } else { as_text(args, &findings, &problems) };
@@ -47,16 +47,7 @@ pub fn run(args: &Info) -> Result<Outcome, Failure> {
     Ok(if clean { Outcome::Done } else { Outcome::Partly })
 }
 
-fn ids(rig: &Rig) -> Vec<String> {
-    rig.sensors().iter().map(|sensor| sensor.id().to_owned()).collect()
-}
-
-fn find<N: SensorNames>(
-    args: &Info,
-    rig: Option<&Arc<Rig>>,
-    names: N,
-    ids: impl Fn(&N) -> Vec<String>,
-) -> Result<Findings, Failure> {
+fn find<N: SensorNames>(args: &Info, rig: Option<&Arc<Rig>>, names: N) -> Result<Findings, Failure> {
     let input = command::open(&args.input, args.from)?;
     let format = command::table_format(rig.map(Arc::as_ref));
     let poses = command::pose_use(&args.log, PoseUse::IfThere);
@@ -70,7 +61,13 @@ fn find<N: SensorNames>(
     let limits: Vec<Limits<f64>> = rig.map(|rig| rig.sensors().iter().map(limits).collect()).unwrap_or_default();
     let track: Option<&mut AnyTrack> = track.as_mut().map(|(track, _)| track);
     let survey = survey(&mut source, track, &limits)?;
-    Ok(Findings { format, ids: ids(source.names()), survey, pose_source, rig: rig.cloned() })
+    Ok(Findings {
+        format,
+        ids: source.ids().iter().map(ToString::to_string).collect(),
+        survey,
+        pose_source,
+        rig: rig.cloned(),
+    })
 }
 
 fn limits(sensor: &Sensor) -> Limits<f64> {

@@ -1,0 +1,141 @@
+use atm::core::{Bounds, DomainError, Kind, MinAngle, OnNone, OnTwo, RangeResolution, Travel};
+use clap::{Args, ValueEnum};
+
+use super::{
+    log::{Format, LogArgs},
+    values::{history, kind, min_angle, positive_duration, positive_length, positive_number, range_resolution, travel},
+};
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Long tables have the columns t,sensor,range,x,y,yaw, wide ones t,x,y,yaw and one for each sensor; rigs may describe others. \
+Out comes t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance. For driving, --keep median,single: \
+a reading without crossings falls back to the centre of its cone, and shuts openings as the cone does.")]
+pub struct Fuse {
+    /// The log: a path, or - for standard input
+    pub input: String,
+    /// Where the echoes go: a path, or - for standard output
+    #[arg(short, long, value_name = "OUT", default_value = "-")]
+    pub output: String,
+    /// Format of the input, instead of what its content says
+    #[arg(long, value_enum)]
+    pub from: Option<Format>,
+    /// Format of the output, instead of what its name says
+    #[arg(long, value_enum)]
+    pub to: Option<Format>,
+    #[command(flatten)]
+    pub log: LogArgs,
+    /// H: the local map holds the last H readings of every sensor
+    #[arg(long, value_name = "N", default_value = "10", value_parser = history)]
+    pub history: usize,
+    /// A reading leaves the local map after this time
+    #[arg(long, value_name = "T", value_parser = positive_duration)]
+    pub max_age: Option<u64>,
+    /// A reading leaves the local map after this much path
+    #[arg(long, value_name = "L", value_parser = travel)]
+    pub max_travel: Option<Travel>,
+    /// Skip a reading whose sensor moved less than this since its last one in the local map
+    #[arg(long, value_name = "L", value_parser = positive_length)]
+    pub min_step: Option<f64>,
+    /// Skip a reading equal to its sensor's previous one, for rings that repeat held values
+    #[arg(long)]
+    pub drop_held: bool,
+    /// Crossings count from this angle on [default: 30deg]
+    #[arg(long, value_name = "A", value_parser = min_angle, conflicts_with = "improvement")]
+    pub min_angle: Option<MinAngle<f64>>,
+    /// Choose the angle for this gain in resolution at the distance --at
+    #[arg(long, value_name = "N", value_parser = positive_number, requires = "at")]
+    pub improvement: Option<f64>,
+    /// The distance for --improvement
+    #[arg(long, value_name = "L", value_parser = positive_length, requires = "improvement")]
+    pub at: Option<f64>,
+    /// Quantisation step of the ranges; beats the rig's [default: the rig's, else 1in]
+    #[arg(long, value_name = "L", value_parser = range_resolution)]
+    pub range_resolution: Option<RangeResolution<f64>>,
+    /// When echoes are reported
+    #[arg(long, value_enum, default_value = "settled")]
+    pub emit: Emit,
+    /// What a reading without crossings gives
+    #[arg(long, value_enum, default_value = "center")]
+    pub on_none: NoneOption,
+    /// What a reading with exactly two crossings gives
+    #[arg(long, value_enum, default_value = "drop")]
+    pub on_two: TwoOption,
+    /// Write only these kinds of echoes [default: all]
+    #[arg(long, value_name = "KIND", value_delimiter = ',', value_parser = kind)]
+    pub keep: Vec<Kind>,
+    /// Also write every transversal crossing, as CSV
+    #[arg(long, value_name = "FILE")]
+    pub crossings: Option<String>,
+    /// Stop at the first unusable record
+    #[arg(long)]
+    pub strict: bool,
+    /// No progress and no closing summary
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Write the counts as JSON
+    #[arg(long, value_name = "FILE")]
+    pub summary: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Emit {
+    /// When the reading leaves the local map, from every arc it met
+    Settled,
+    /// At the reading's arrival, from the arcs before it
+    Latest,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum NoneOption {
+    /// The arc's centre
+    Center,
+    /// No echo
+    Drop,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TwoOption {
+    /// No echo
+    Drop,
+    /// The arc's centre
+    Center,
+    /// Their mean
+    Mean,
+}
+
+impl From<NoneOption> for OnNone {
+    fn from(option: NoneOption) -> Self {
+        match option {
+            NoneOption::Center => Self::Center,
+            NoneOption::Drop => Self::Drop,
+        }
+    }
+}
+
+impl From<TwoOption> for OnTwo {
+    fn from(option: TwoOption) -> Self {
+        match option {
+            TwoOption::Drop => Self::Drop,
+            TwoOption::Center => Self::Center,
+            TwoOption::Mean => Self::Mean,
+        }
+    }
+}
+
+impl Fuse {
+    /// The bounds on the local map.
+    pub fn bounds(&self) -> Result<Bounds<f64>, DomainError> {
+        let mut bounds = Bounds::NONE.with_held_dropped(self.drop_held);
+        if let Some(age) = self.max_age {
+            bounds = bounds.with_max_age(age);
+        }
+        if let Some(travel) = self.max_travel {
+            bounds = bounds.with_max_travel(travel);
+        }
+        match self.min_step {
+            Some(step) => bounds.with_min_step(step),
+            None => Ok(bounds),
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! What can stand on the command line, one file a command.
+
+mod fuse;
+mod info;
+mod log;
+mod plan;
+mod values;
+
+use clap::{Parser, Subcommand};
+
+pub use self::{
+    fuse::{Emit, Fuse},
+    info::Info,
+    log::{Empty, Format, LogArgs},
+    plan::Plan,
+};
+
+/// Sharp echo points from wide-beam range sensors on a moving robot: the arc-transversal median.
+#[derive(Debug, Parser)]
+#[command(name = "atm", version, max_term_width = 100, after_help = UNITS)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const UNITS: &str = "\
+Lengths take m, cm, mm, in or ft; angles deg or rad; times s or ms; speeds m/s or in/s; rates Hz. \
+A bare number is SI, except for angles, which need their unit.
+
+Exit status: 0 done; 1 failed; 2 wrong arguments; 3 done, but part of the input was unusable.";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Turn a log of range readings into echo points
+    Fuse(Box<Fuse>),
+    /// What resolution to expect at a distance, and what it takes: equation (2) both ways
+    Plan(Plan),
+    /// What is in a log
+    Info(Info),
+}

@@ -1,0 +1,76 @@
+//! Values of flags: text with a unit in, checked numbers out.
+
+use std::{fmt::Display, str::FromStr};
+
+use atm::{
+    core::{Beam, Kind, MinAngle, RangeResolution, Travel},
+    storage::LatestSlots,
+    units,
+};
+
+pub fn history(text: &str) -> Result<usize, String> {
+    let most = LatestSlots::<f64>::MAX_HISTORY;
+    match text.parse() {
+        Ok(history) if (1..=most).contains(&history) => Ok(history),
+        _ => Err(format!("{text} is no whole number from 1 to {most}")),
+    }
+}
+
+pub fn kind(text: &str) -> Result<Kind, String> {
+    let kinds = Kind::ALL.map(Kind::name).join(", ");
+    Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(|| format!("{text} is none of {kinds}"))
+}
+
+fn words(error: impl Display) -> String {
+    error.to_string()
+}
+
+fn positive(value: f64, text: &str) -> Result<f64, String> {
+    if value > 0.0 { Ok(value) } else { Err(format!("{text} is not positive")) }
+}
+
+pub fn positive_number(text: &str) -> Result<f64, String> {
+    match f64::from_str(text) {
+        Ok(number) if number.is_finite() => positive(number, text),
+        _ => Err(format!("{text} is no number")),
+    }
+}
+
+pub fn positive_length(text: &str) -> Result<f64, String> {
+    positive(units::length(text).map_err(words)?, text)
+}
+
+pub fn positive_speed(text: &str) -> Result<f64, String> {
+    positive(units::speed(text).map_err(words)?, text)
+}
+
+pub fn positive_rate(text: &str) -> Result<f64, String> {
+    positive(units::rate(text).map_err(words)?, text)
+}
+
+pub fn duration(text: &str) -> Result<u64, String> {
+    u64::try_from(units::duration(text).map_err(words)?).map_err(|_| format!("{text} is negative"))
+}
+
+pub fn positive_duration(text: &str) -> Result<u64, String> {
+    match duration(text)? {
+        0 => Err(format!("{text} is not positive")),
+        nanoseconds => Ok(nanoseconds),
+    }
+}
+
+pub fn travel(text: &str) -> Result<Travel, String> {
+    Travel::from_metres(units::length(text).map_err(words)?).map_err(words)
+}
+
+pub fn range_resolution(text: &str) -> Result<RangeResolution<f64>, String> {
+    RangeResolution::new(units::length(text).map_err(words)?).map_err(words)
+}
+
+pub fn beam(text: &str) -> Result<Beam<f64>, String> {
+    Beam::new(units::angle(text).map_err(words)?).map_err(words)
+}
+
+pub fn min_angle(text: &str) -> Result<MinAngle<f64>, String> {
+    MinAngle::new(units::angle(text).map_err(words)?).map_err(words)
+}
