@@ -5,6 +5,7 @@ mod columns;
 pub mod csv;
 pub mod echoes;
 pub mod format;
+pub mod mcap;
 pub mod output;
 pub mod poses;
 pub mod table;

@@ -1,0 +1,4 @@
+//! Recordings in MCAP (mcap.dev/spec): robot logs of ROS 2, ROS 1 and Foxglove.
+mod raw;
+
+pub use self::raw::{Attachment, Channel, Message, Metadata, Schema, Tap};
