@@ -24,7 +24,8 @@ use crate::{
 pub enum Next {
     /// The next record was read.
     Record,
-    /// The next record can't be used: its problem was reported, and the log can be asked on.
+    /// What comes next gives no record: it can't be used, and its problem was reported, or it is no reading. The log can be
+    /// asked on.
     Unusable,
     /// There are no more records.
     End,

@@ -8,6 +8,7 @@ use super::{
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
+Recordings (MCAP) of ROS 2, ROS 1 and Foxglove need no more. \
 Long tables have the columns t,sensor,range,x,y,yaw, wide ones t,x,y,yaw and one for each sensor; rigs may describe others. \
 Out comes t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance. For driving, --keep median,single: \
 a reading without crossings falls back to the centre of its cone, and shuts openings as the cone does.")]
