@@ -185,7 +185,8 @@ fn is_mcap(path: &str) -> bool {
 fn no_rig() -> Error {
     let built_in = Rig::BUILTIN.join(", ");
     let message = format!(
-        "a table does not say which sensors made it: name the rig (--rig), a built-in one ({built_in}) or a TOML file"
+        "a table does not say which sensors made it: name the rig with --rig (in Python rig=), a built-in one \
+         ({built_in}) or a TOML file"
     );
     Error::Settings { message }
 }
@@ -205,8 +206,8 @@ pub struct FuseJob {
     pub crossings: Option<String>,
     /// Where the counts go, as JSON.
     pub summary: Option<String>,
-    /// Kinds of echoes to write; all where there are none.
-    pub keep: Vec<Kind>,
+    /// Kinds of echoes to write, where not all are.
+    pub keep: Option<Vec<Kind>>,
 }
 
 /// How a run ended.
@@ -214,12 +215,24 @@ pub struct FuseJob {
 pub struct Ended {
     /// What was counted, whatever came of the run.
     pub summary: Summary,
+    /// Where a recording's poses came from.
+    pub pose_source: Option<String>,
     /// What a person should know of how the log was read.
     pub notes: Vec<String>,
     /// Why it did not end well.
     pub result: Result<()>,
     /// The files that hold what a run that did not end well had written.
     pub partials: Vec<String>,
+}
+
+/// Where a recording's poses come from, in words, and where else they could.
+pub fn poses_of(log: &McapReadings) -> Option<String> {
+    let others = log.other_poses();
+    let others = match others.len() {
+        0 => String::new(),
+        _ => format!(" (not used: {}; --pose-topic chooses)", others.join(", ")),
+    };
+    Some(log.pose_source()? + &others)
 }
 
 /// Is told bytes read and the log's length, now and then and at the end; `false` ends the run.
@@ -267,16 +280,16 @@ impl FuseJob {
         let fused = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
         let (summary, result) = fused;
         let result = result.and_then(|()| watched.finish());
-        let notes = match &log {
-            OpenLog::Csv(..) => Vec::new(),
-            OpenLog::Mcap(log) => log.notes(),
+        let (pose_source, notes) = match &log {
+            OpenLog::Csv(..) => (None, Vec::new()),
+            OpenLog::Mcap(log) => (poses_of(log), log.notes()),
         };
         let partials = outputs.partials();
         let result = result.and_then(|()| outputs.commit());
         let partials = if result.is_err() { partials } else { Vec::new() };
         // Whatever came of the run: what was counted is true.
         let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
-        Ok(Ended { summary, notes, result: result.and(counted), partials })
+        Ok(Ended { summary, pose_source, notes, result: result.and(counted), partials })
     }
 }
 

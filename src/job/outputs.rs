@@ -15,8 +15,8 @@ use crate::{
 pub(super) struct Outputs {
     echoes: Option<TableWriter<Output>>,
     crossings: Option<TableWriter<Output>>,
-    /// Kinds to write; all where it is empty.
-    keep: Vec<Kind>,
+    /// Kinds to write, where not all are.
+    keep: Option<Vec<Kind>>,
 }
 
 impl Outputs {
@@ -66,7 +66,7 @@ impl EchoSink for Outputs {
 
     fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
         let Some(table) = &mut self.echoes else { return Ok(false) };
-        if !self.keep.is_empty() && !self.keep.contains(&echo.kind) {
+        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
             return Ok(false);
         }
         let written = table.echo(echo);

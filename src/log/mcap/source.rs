@@ -240,7 +240,12 @@ impl McapReadings {
         self.reader.whereabouts.fixed_frame()
     }
 
-    /// What a person should know of how the recording was read: which poses, which clock, what was assumed.
+    /// Topics that have poses, too, and are not used.
+    pub fn other_poses(&self) -> Vec<&str> {
+        self.reader.whereabouts.unused()
+    }
+
+    /// What a person should know of how the recording was read: which clocks it has, what was assumed.
     pub fn notes(&self) -> Vec<String> {
         self.reader.notes()
     }
@@ -476,14 +481,6 @@ impl Reader {
 
     fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
-        if let Some(source) = self.whereabouts.source() {
-            let unused = self.whereabouts.unused();
-            let others = match unused.len() {
-                0 => String::new(),
-                _ => format!(" (not used: {}; --pose-topic chooses)", unused.join(", ")),
-            };
-            notes.push(format!("poses     {source}{others}"));
-        }
         if let Some(words) = self.clocks.words() {
             notes.push(format!("clock     {words}"));
         }
@@ -507,7 +504,7 @@ type Taken = (Option<crate::track::Pose>, f64, View);
 fn on_plane(reading: &Reading, sensor: &Rigid) -> Result<(f64, View), Lost> {
     let [forward, left, up] = sensor.forward();
     // NaN is out of the plane, too.
-    if !(up.abs() <= STEEPEST) {
+    if up.is_nan() || up.abs() > STEEPEST {
         let degrees = libm::asin(up.clamp(-1.0, 1.0)).to_degrees();
         let words = format!("its boresight points {degrees:.1}deg out of the plane, and may 10deg");
         return Err(Lost { reason: Reason::Tilted, words });

@@ -26,7 +26,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
         to: args.to.map(Into::into),
         crossings: args.crossings.clone(),
         summary: args.summary.clone(),
-        keep: args.keep.clone(),
+        keep: (!args.keep.is_empty()).then(|| args.keep.clone()),
     };
     let settings = settings(args, &job.log.models()?)?;
     let mut bar = None;
@@ -38,9 +38,12 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let Ended { summary, notes, result, partials } = ended?;
+    let Ended { summary, pose_source, notes, result, partials } = ended?;
     if !matches!(&result, Err(error) if is_reader_gone(error)) {
-        tell(args, &notes, &summary, job.log.guesses_resolution());
+        tell(args, pose_source.as_deref(), &summary, job.log.guesses_resolution());
+    }
+    for note in &notes {
+        report::say(format_args!("{note}"));
     }
     result.map_err(|error| unfinished(error, &partials))?;
     Ok(if summary.is_clean() { Outcome::Done } else { Outcome::Partly })
@@ -68,10 +71,10 @@ fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings, Failure> {
 }
 
 /// Says what was counted, and what deserves a word.
-fn tell(args: &Fuse, notes: &[String], summary: &Summary, guessed: bool) {
+fn tell(args: &Fuse, pose_source: Option<&str>, summary: &Summary, guessed: bool) {
     if !args.quiet {
-        for note in notes {
-            report::say(format_args!("{note}"));
+        if let Some(source) = pose_source {
+            report::say(format_args!("poses     {source}"));
         }
         report::say(format_args!("{}", report::counts(summary)));
     }

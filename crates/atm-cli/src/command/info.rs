@@ -5,7 +5,7 @@ use std::{fmt::Write as _, sync::Arc};
 use atm::{
     core::Limits,
     error::Error,
-    job::LogJob,
+    job::{LogJob, poses_of},
     log::{
         Input, Source,
         csv::{CsvReadings, Discover, PoseUse, SensorNames},
@@ -95,7 +95,7 @@ fn find_mcap(job: &LogJob, input: Input) -> Result<Findings, Error> {
         topics: topics.collect(),
         ids,
         survey,
-        pose_source: second_file.or_else(|| source.pose_source()),
+        pose_source: second_file.or_else(|| poses_of(&source)),
         notes: source.notes(),
         rig: job.rig.clone(),
     })
@@ -197,12 +197,7 @@ fn as_text(args: &Info, findings: &Findings, problems: &[String]) -> String {
     if let Some((gap, since)) = survey.longest_gap {
         let _ = writeln!(text, "gap       {:.3} s at most, after {} s", gap as f64 * 1e-9, stamp::text(since));
     }
-    match findings.notes.iter().find(|note| note.starts_with("poses ")) {
-        Some(_) => {}
-        None => {
-            let _ = writeln!(text, "poses     {}", findings.pose_source.as_deref().unwrap_or("none"));
-        }
-    }
+    let _ = writeln!(text, "poses     {}", findings.pose_source.as_deref().unwrap_or("none"));
     for note in &findings.notes {
         let _ = writeln!(text, "{note}");
     }
