@@ -10,7 +10,7 @@ use super::values::{beam, duration};
 pub enum Format {
     /// A text table.
     Csv,
-    /// A ROS or Foxglove recording (not supported yet).
+    /// A ROS or Foxglove recording.
     Mcap,
 }
 

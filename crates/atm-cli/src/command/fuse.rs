@@ -1,23 +1,24 @@
 //! `atm fuse`: a log in, echoes out.
+mod outputs;
 
 use std::{io::Write, sync::Arc};
 
 use atm::{
-    core::{ArcCrossing, Echo, Kind, MinAngle, TransversalMedian},
-    error::{Error, Result},
+    core::{Kind, MinAngle, TransversalMedian},
+    error::Error,
     log::{
         csv::{CsvReadings, PoseUse},
-        echoes::TableWriter,
         output::{Output, overwrites, same_file},
     },
-    pipeline::{self, Defaults, EchoSink, Emit, SensorModel, Settings},
+    pipeline::{self, Defaults, Emit, SensorModel, Settings},
     rig::Rig,
     summary::Summary,
 };
 
+use self::outputs::Outputs;
 use crate::{
     Failure, Outcome,
-    args::{self, Format, Fuse},
+    args::{self, Fuse},
     command, is_reader_gone, report,
 };
 
@@ -38,20 +39,20 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     let format = command::table_format(Some(&rig));
     let mut source = CsvReadings::new(input, &format, poses, command::empty_cell(&args.log), Arc::clone(&rig))?;
     let mut track = command::track(&args.log, Some(&rig))?.map(|(track, _)| track);
-    let mut tables = Tables::create(args, &rig)?;
+    let mut outputs = Outputs::create(args, &rig, &sensors)?;
     let counts = args.summary.as_deref().map(Output::create).transpose()?;
 
     let bar = report::progress(length, args.quiet);
     let mut progress = |bytes| bar.set_position(bytes);
     let (summary, result) =
-        pipeline::fuse(&mut source, track.as_mut(), &sensors, &settings, &mut tables, &mut progress);
+        pipeline::fuse(&mut source, track.as_mut(), &sensors, &settings, &mut outputs, &mut progress);
     bar.finish_and_clear();
 
     if !matches!(&result, Err(error) if is_reader_gone(error)) {
         tell(args, &rig, &defaults, &summary);
     }
-    let partials = tables.partials();
-    let result = result.and_then(|()| tables.commit());
+    let partials = outputs.partials().to_vec();
+    let result = result.and_then(|()| outputs.commit());
     // Whatever came of the run: what was counted is true.
     let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
     result.map_err(|error| unfinished(error, &partials))?;
@@ -69,10 +70,6 @@ fn no_rig() -> Failure {
 /// Refuses outputs that can't be written, or that would destroy an input or one another.
 fn check_outputs(args: &Fuse) -> Result<(), Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
-    let to_mcap = args.output.to_ascii_lowercase().ends_with(".mcap") && args.to.is_none();
-    if to_mcap || args.to == Some(Format::Mcap) {
-        return usage(format!("{}: MCAP is not supported yet; atm reads and writes text tables (CSV)", args.output));
-    }
     let outputs: Vec<&str> = [Some(&args.output), args.crossings.as_ref(), args.summary.as_ref()]
         .into_iter()
         .flatten()
@@ -145,85 +142,4 @@ fn write_counts(mut output: Output, summary: &Summary) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(summary).map_err(|error| Failure::Failed(error.to_string()))?;
     writeln!(output, "{text}").map_err(|error| output.error(error))?;
     Ok(output.commit()?)
-}
-
-/// The tables that are written.
-struct Tables {
-    echoes: TableWriter<Output>,
-    crossings: Option<TableWriter<Output>>,
-    /// Kinds to write; all where it is empty.
-    keep: Vec<Kind>,
-}
-
-impl Tables {
-    fn create(args: &Fuse, rig: &Rig) -> Result<Self> {
-        let ids = || rig.sensors().iter().map(|sensor| sensor.id());
-        let named = |file: &Arc<str>| {
-            let file = Arc::clone(file);
-            move |source| Error::Io { file, source }
-        };
-        let output = Output::create(&args.output)?;
-        let file = Arc::clone(output.name());
-        let echoes = TableWriter::echoes(output, ids()).map_err(named(&file))?;
-        let output = args.crossings.as_deref().map(Output::create).transpose()?;
-        let crossings = output.map(|output| {
-            let file = Arc::clone(output.name());
-            TableWriter::crossings(output, ids()).map_err(named(&file))
-        });
-        let crossings = crossings.transpose()?;
-        Ok(Self { echoes, crossings, keep: args.keep.clone() })
-    }
-
-    /// The files that hold what was written until [`Tables::commit`].
-    fn partials(&self) -> Vec<String> {
-        let outputs = std::iter::once(&self.echoes).chain(&self.crossings).map(TableWriter::get_ref);
-        outputs.filter_map(Output::partial_path).map(|path| path.display().to_string()).collect()
-    }
-
-    /// Puts the files under their names.
-    fn commit(self) -> Result<()> {
-        if let Some(crossings) = self.crossings {
-            crossings.into_inner().commit()?;
-        }
-        self.echoes.into_inner().commit()
-    }
-}
-
-/// Names the table's file in what the system says of it.
-fn name<T>(table: &TableWriter<Output>, result: std::io::Result<T>) -> Result<T> {
-    result.map_err(|error| table.get_ref().error(error))
-}
-
-impl EchoSink for Tables {
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        if !self.keep.is_empty() && !self.keep.contains(&echo.kind) {
-            return Ok(false);
-        }
-        let written = self.echoes.echo(echo);
-        name(&self.echoes, written).map(|()| true)
-    }
-
-    fn wants_crossings(&self) -> bool {
-        self.crossings.is_some()
-    }
-
-    fn crossings(&mut self, crossings: &[ArcCrossing<f64>]) -> Result<()> {
-        if let Some(table) = &mut self.crossings {
-            for crossing in crossings {
-                let written = table.crossing(crossing);
-                name(table, written)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn flush(&mut self) -> Result<()> {
-        let flushed = self.echoes.flush();
-        name(&self.echoes, flushed)?;
-        if let Some(table) = &mut self.crossings {
-            let flushed = table.flush();
-            name(table, flushed)?;
-        }
-        Ok(())
-    }
 }
