@@ -17,7 +17,10 @@ use crate::{
         Input, Source,
         csv::{CsvReadings, EmptyCell, PoseUse},
         format::{Format, MCAP_MAGIC},
-        mcap::{ClockChoice, McapReadings, Options, Tap},
+        mcap::{
+            ClockChoice, McapReadings, Options,
+            write::{Contents, SchemaKind},
+        },
         output::{Output, overwrites, same_file},
         poses::PoseLog,
     },
@@ -91,6 +94,15 @@ pub enum OpenLog {
     Mcap(Box<McapReadings>),
 }
 
+impl OpenLog {
+    fn recording(&self) -> Option<&McapReadings> {
+        match self {
+            Self::Csv(..) => None,
+            Self::Mcap(log) => Some(log),
+        }
+    }
+}
+
 impl LogJob {
     /// Opens the log itself, and says what it is.
     ///
@@ -100,7 +112,7 @@ impl LogJob {
         let (found, input) = Input::open(&self.input)?.sniff()?;
         // What was cut off before it could say what it is goes by its name.
         let is_cut = input.length.is_some_and(|length| length < MCAP_MAGIC.len() as u64);
-        let found = if is_cut && is_mcap(&self.input) { Format::Mcap } else { found };
+        let found = if is_cut && Format::of_name(&self.input) == Format::Mcap { Format::Mcap } else { found };
         let format = self.from.unwrap_or(found);
         if format != Format::Csv {
             return Ok((Format::Mcap, input));
@@ -123,6 +135,7 @@ impl LogJob {
             max_message: wishes.max_message.unwrap_or(default.max_message),
             max_gap: self.max_gap,
             poses,
+            everything: false,
             defaults: self.defaults,
         }
     }
@@ -158,16 +171,20 @@ impl LogJob {
         }
     }
 
-    /// Opens the log with the sensors and poses it needs.
-    fn readings(&self, tap: Option<Box<dyn Tap>>) -> Result<(OpenLog, Option<u64>)> {
+    /// Opens the log with the sensors and poses it needs, and says how long it is. `everything`: what a recording holds besides is
+    /// wanted, too.
+    fn readings(&self, everything: bool) -> Result<(OpenLog, Option<u64>)> {
         let (format, input) = self.open()?;
         let length = input.length;
         let track = self.track()?.map(|(track, _)| track);
         if format != Format::Csv {
-            let options = self.options(if track.is_some() { PoseUse::Ignored } else { PoseUse::Needed });
-            let options = Options { poses: PoseUse::Needed, ..options };
-            let log = McapReadings::open(&self.input, input, self.rig.clone(), track, tap, options)?;
+            let options = Options { everything, ..self.options(PoseUse::Needed) };
+            let log = McapReadings::open(&self.input, input, self.rig.clone(), track, options)?;
             return Ok((OpenLog::Mcap(Box::new(log)), length));
+        }
+        if everything {
+            let message = format!("--passthrough: {} is a table, no recording that could be copied", input.name);
+            return Err(Error::Settings { message });
         }
         let rig = self.rig.as_ref().ok_or_else(no_rig)?;
         let poses = if track.is_some() { PoseUse::Ignored } else { PoseUse::Needed };
@@ -175,11 +192,6 @@ impl LogJob {
         let log = CsvReadings::new(input, &format, poses, self.empty, Arc::clone(rig))?;
         Ok((OpenLog::Csv(Box::new(log), track), length))
     }
-}
-
-/// Whether a file is a recording by its name.
-fn is_mcap(path: &str) -> bool {
-    path.to_ascii_lowercase().ends_with(".mcap")
 }
 
 fn no_rig() -> Error {
@@ -208,6 +220,10 @@ pub struct FuseJob {
     pub summary: Option<String>,
     /// Kinds of echoes to write, where not all are.
     pub keep: Option<Vec<Kind>>,
+    /// The messages of a recording that is written.
+    pub schema: SchemaKind,
+    /// Whether the log, a recording, is copied into the output, another one.
+    pub passthrough: bool,
 }
 
 /// How a run ended.
@@ -258,7 +274,21 @@ impl FuseJob {
         if self.log.poses.as_deref() == Some("-") && self.log.input == "-" {
             return refuse("standard input can't be both the log and the poses".into());
         }
+        if self.passthrough && (self.output.is_none() || self.format() != Format::Mcap) {
+            let output = self.output.as_deref().unwrap_or("no output");
+            return refuse(format!("--passthrough: {output} is no recording that the log could be copied into"));
+        }
         Ok(())
+    }
+
+    /// What the output is.
+    fn format(&self) -> Format {
+        self.to.unwrap_or_else(|| self.output.as_deref().map_or(Format::Csv, Format::of_name))
+    }
+
+    /// Whether the log is copied into the output of these contents.
+    fn passes(&self, contents: Contents) -> bool {
+        self.passthrough && contents == Contents::Everything
     }
 
     /// Runs it, as `settings` say.
@@ -267,10 +297,20 @@ impl FuseJob {
     /// What keeps it from beginning; what ends it later is in [`Ended::result`].
     pub fn run(&self, settings: &Settings, progress: &mut Progress<'_>) -> Result<Ended> {
         self.check()?;
-        let (mut log, length) = self.log.readings(None)?;
-        let sensors = self.log.models()?;
-        let ids = self.log.rig.as_deref().map(Rig::ids).unwrap_or_default();
-        let mut outputs = Outputs::create(self, ids)?;
+        let (mut log, length) = self.log.readings(self.passthrough)?;
+        let sensors = match self.log.rig {
+            Some(_) => self.log.models()?,
+            None => Vec::new(),
+        };
+        let input = outputs::Input {
+            ids: self.log.rig.as_deref().map(Rig::ids).unwrap_or_default(),
+            mounts: sensors.iter().map(|sensor| sensor.mount).collect(),
+            recording: log.recording(),
+        };
+        let mut outputs = Outputs::create(self, settings, &input)?;
+        if let (OpenLog::Mcap(log), true, Some(tap)) = (&mut log, self.passthrough, outputs.tap()) {
+            log.set_tap(tap);
+        }
         let counts = self.summary.as_deref().map(Output::create).transpose()?;
         let (source, track): (&mut dyn Source, _) = match &mut log {
             OpenLog::Csv(log, track) => (&mut **log, track.as_mut()),
@@ -280,10 +320,11 @@ impl FuseJob {
         let fused = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
         let (summary, result) = fused;
         let result = result.and_then(|()| watched.finish());
-        let (pose_source, notes) = match &log {
+        let (pose_source, mut notes) = match &log {
             OpenLog::Csv(..) => (None, Vec::new()),
             OpenLog::Mcap(log) => (poses_of(log), log.notes()),
         };
+        notes.extend(outputs.late());
         let partials = outputs.partials();
         let result = result.and_then(|()| outputs.commit());
         let partials = if result.is_err() { partials } else { Vec::new() };

@@ -18,6 +18,13 @@ pub enum Format {
     Mcap,
 }
 
+impl Format {
+    /// What a file is by its name.
+    pub fn of_name(path: &str) -> Self {
+        if path.to_ascii_lowercase().ends_with(".mcap") { Self::Mcap } else { Self::Csv }
+    }
+}
+
 impl Input {
     /// What the first bytes say it is; they are still there to be read.
     ///

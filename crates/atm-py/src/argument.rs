@@ -84,9 +84,9 @@ pub mod named {
         )*};
     }
 
-    words! { emit on_none on_two name id }
+    words! { emit on_none on_two name id schema }
     optional_words! { empty from_ to topic pose_topic fixed_frame clock }
-    flags! { drop_held strict }
+    flags! { drop_held strict passthrough }
 
     /// Where it has to be given or has a default of its own.
     pub fn range_step(value: &Bound<'_, PyAny>) -> PyResult<f64> {

@@ -3,7 +3,11 @@
 use atm::{
     core::{Beam, Bounds, MinAngle, RangeResolution, TransversalMedian},
     job::{FuseJob, LogJob, MAX_GAP, McapWishes},
-    log::{csv::EmptyCell, format::Format, mcap::ClockChoice},
+    log::{
+        csv::EmptyCell,
+        format::Format,
+        mcap::{ClockChoice, write::SchemaKind},
+    },
     pipeline::{self, Defaults, SensorModel, Settings},
     summary::{Dropped, Summary},
     units::{self, UnitError},
@@ -82,6 +86,10 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// progress : callable, optional
 ///     Called now and then with the bytes read and the file's length (None where that is not known), and once at the end. What it
 ///     raises ends the run.
+/// schema : {"foxglove", "ros2"}
+///     The messages of a recording that is written.
+/// passthrough : bool
+///     Whether all that the recording holds is copied into the recording that is written.
 /// range_topics : iterable of str or str, optional
 ///     Recordings: topics of readings, also as one text with commas. None: all of sensor_msgs/Range.
 /// pose_topic, fixed_frame : str, optional
@@ -131,7 +139,8 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 #[pyo3(signature = (input, *, rig=None, poses=None, output=None, summary=None, crossings=None, max_gap=None, history=10,
                     max_age=None, max_travel=None, min_step=None, empty=None, min_angle=None, improvement=None, at=None,
                     range_resolution=None, fov=None, emit="settled", on_none="center", on_two="drop", keep=None,
-                    drop_held=false, strict=false, from_=None, to=None, range_topics=None, pose_topic=None, fixed_frame=None,
+                    drop_held=false, strict=false, from_=None, to=None, schema="foxglove", passthrough=false,
+                    range_topics=None, pose_topic=None, fixed_frame=None,
                     clock=None, reorder=None, max_message=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse_file<'py>(
@@ -161,6 +170,8 @@ pub fn fuse_file<'py>(
     #[pyo3(from_py_with = named::strict)] strict: bool,
     #[pyo3(from_py_with = named::from_)] from_: Option<&str>,
     #[pyo3(from_py_with = named::to)] to: Option<&str>,
+    #[pyo3(from_py_with = named::schema)] schema: &str,
+    #[pyo3(from_py_with = named::passthrough)] passthrough: bool,
     range_topics: Option<&Bound<'py, PyAny>>,
     #[pyo3(from_py_with = named::pose_topic)] pose_topic: Option<&str>,
     #[pyo3(from_py_with = named::fixed_frame)] fixed_frame: Option<&str>,
@@ -182,6 +193,7 @@ pub fn fuse_file<'py>(
         range_resolution: step.map_err(|error| raise::value("range_resolution", error))?,
     };
     let empties = [("no-echo", EmptyCell::NoEcho), ("skip", EmptyCell::Skip)];
+    let schemas = [("foxglove", SchemaKind::Foxglove), ("ros2", SchemaKind::Ros2)];
     let clocks = [("header", ClockChoice::Header), ("log", ClockChoice::Log), ("publish", ClockChoice::Publish)];
     let job = FuseJob {
         log: LogJob {
@@ -213,6 +225,8 @@ pub fn fuse_file<'py>(
         crossings: path("crossings", crossings)?,
         summary: path("summary", summary)?,
         keep: options::keep(keep)?,
+        schema: argument::choice("schema", schema, &schemas)?,
+        passthrough,
     };
     job.check().map_err(|error| raise::library(&error))?;
     let sensors = job.log.models().map_err(|error| raise::library(&error))?;

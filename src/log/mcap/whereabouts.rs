@@ -8,6 +8,7 @@ use super::{
 };
 use crate::{
     error::{Problem, Reason, Result},
+    log::Frames,
     pipeline::AnyTrack,
     stamp,
     track::Pose,
@@ -283,11 +284,14 @@ impl Whereabouts {
         }
         let frame = seat.frame.ok_or_else(|| Lost::apart("the reading names no frame"))?;
         let sensor = self.tree.lookup(frame, fixed, seat.t, self.max_gap).map_err(missed)?;
-        // The robot is what moves in the fixed frame, whatever moves on the robot.
-        let below = self.tree.path(frame).take_while(|frame| *frame != fixed);
-        let robot = below.filter(|frame| self.tree.moves(*frame)).last().unwrap_or(frame);
-        let robot = self.tree.lookup(robot, fixed, seat.t, self.max_gap).map_err(missed)?;
+        let robot = self.tree.lookup(self.robot_below(frame, fixed), fixed, seat.t, self.max_gap).map_err(missed)?;
         Ok(Placed { robot: robot.on_plane(), sensor })
+    }
+
+    /// The robot above a sensor's frame: what moves in the fixed frame, whatever moves on the robot.
+    fn robot_below(&self, frame: Frame, fixed: Frame) -> Frame {
+        let below = self.tree.path(frame).take_while(|frame| *frame != fixed);
+        below.filter(|frame| self.tree.moves(*frame)).last().unwrap_or(frame)
     }
 
     fn by_topic(&self, seat: Seat, topic: &Topic) -> Result<Placed, Lost> {
@@ -350,15 +354,31 @@ impl Whereabouts {
         })
     }
 
-    /// The frame in which the poses are, once that is decided and has a name.
-    pub(super) fn fixed_frame(&self) -> Option<&str> {
-        match self.chosen.as_ref()? {
-            Chosen::Track(_) => None,
-            Chosen::Tree(fixed) => Some(self.tree.name(*fixed)),
-            Chosen::Topic(index) => {
-                let named = self.wish.fixed.as_deref();
-                named.or_else(|| self.topics.get(*index).map(|topic| self.tree.name(topic.frame)))
+    /// What the frames are called in which a sensor was placed.
+    pub(super) fn frames(&self, seat: Seat) -> Frames {
+        let (fixed, robot) = match &self.chosen {
+            Some(Chosen::Tree(fixed)) => {
+                let robot = match (seat.mount, seat.frame) {
+                    (None, Some(frame)) => Some(self.robot_below(frame, *fixed)),
+                    _ => self.robot_frame().ok(),
+                };
+                (Some(*fixed), robot)
             }
+            Some(Chosen::Topic(index)) => {
+                let topic = self.topics.get(*index);
+                let fixed = self.wish.fixed.as_deref().and_then(|name| self.tree.find(name));
+                (fixed.or(topic.map(|topic| topic.frame)), topic.and_then(|topic| topic.child))
+            }
+            Some(Chosen::Track(_)) | None => (self.wish.fixed.as_deref().and_then(|name| self.tree.find(name)), None),
+        };
+        let robot = robot.or_else(|| self.robot_of(seat.frame?).ok());
+        let name =
+            |frame: Option<Frame>, otherwise: &str| frame.map_or(otherwise, |frame| self.tree.name(frame)).into();
+        Frames {
+            fixed: name(fixed, ODOMETRY),
+            robot: name(robot, ROBOT[0]),
+            has_robot: robot.zip(fixed).is_some_and(|(robot, fixed)| self.tree.path(robot).any(|frame| frame == fixed)),
+            has_mounts: seat.mount.is_none(),
         }
     }
 
@@ -376,9 +396,14 @@ impl Whereabouts {
             .collect()
     }
 
+    /// Whether the poses come from a second file.
+    pub(super) const fn has_track(&self) -> bool {
+        matches!(self.chosen, Some(Chosen::Track(_)))
+    }
+
     /// Whether nothing was said of where anything is.
     pub(super) fn is_blank(&self) -> bool {
-        self.topics.is_empty() && self.tree.is_empty() && !matches!(self.chosen, Some(Chosen::Track(_)))
+        self.topics.is_empty() && self.tree.is_empty() && !self.has_track()
     }
 }
 

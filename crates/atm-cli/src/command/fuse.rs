@@ -27,6 +27,8 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
         crossings: args.crossings.clone(),
         summary: args.summary.clone(),
         keep: (!args.keep.is_empty()).then(|| args.keep.clone()),
+        schema: args.schema.into(),
+        passthrough: args.passthrough,
     };
     let settings = settings(args, &job.log.models()?)?;
     let mut bar = None;

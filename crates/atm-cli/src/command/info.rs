@@ -86,7 +86,7 @@ fn find_mcap(job: &LogJob, input: Input) -> Result<Findings, Error> {
     let second_file = track.as_ref().map(|(_, kind)| second_file(job, kind));
     let track = track.map(|(track, _)| track);
     let options = job.options(PoseUse::IfThere);
-    let mut source = McapReadings::open(&job.input, input, job.rig.clone(), track, None, options)?;
+    let mut source = McapReadings::open(&job.input, input, job.rig.clone(), track, options)?;
     let survey = survey(&mut source, None, &[])?;
     let ids: Vec<String> = source.ids().iter().map(ToString::to_string).collect();
     let topics = (0..=u16::MAX).zip(&ids).map(|(sensor, _)| source.topic(sensor).map(str::to_owned));

@@ -239,6 +239,8 @@ def fuse_file(
     strict: bool = False,
     from_: _Format | None = None,
     to: _Format | None = None,
+    schema: Literal["foxglove", "ros2"] = "foxglove",
+    passthrough: bool = False,
     range_topics: Iterable[str] | str | None = None,
     pose_topic: str | None = None,
     fixed_frame: str | None = None,
