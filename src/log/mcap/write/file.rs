@@ -138,11 +138,13 @@ impl<W: Write> McapFile<W> {
 
     /// Writes the summary, and returns what the file was written to.
     pub(super) fn finish(mut self) -> Result<W> {
-        self.with(Writer::finish)?;
-        match self.writer.take() {
-            Some(writer) => Ok(writer.into_inner().into_inner()),
-            None => Err(named(&self.name, McapError::AttemptedWriteAfterFailure)),
-        }
+        let Some(mut writer) = self.writer.take() else {
+            return Err(named(&self.name, McapError::AttemptedWriteAfterFailure));
+        };
+        let finished = writer.finish();
+        // Whatever came of it, the writer must not try again when it is dropped.
+        let out = writer.into_inner().into_inner();
+        finished.map(|_| out).map_err(|error| named(&self.name, error))
     }
 }
 
