@@ -4,6 +4,7 @@ pub use atm_core as core;
 
 pub mod error;
 pub mod intake;
+pub mod job;
 pub mod log;
 pub mod pipeline;
 pub mod rig;

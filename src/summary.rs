@@ -30,7 +30,7 @@ pub struct Summary {
     pub dropped: Dropped,
     /// Times at which the clock was taken to have been set back.
     pub clock_resets: u64,
-    /// Whether the input ends in the middle of something.
+    /// Whether the input ends in the middle of something, or some of it can't be unpacked.
     pub input_damaged: bool,
 }
 
@@ -100,6 +100,12 @@ impl Dropped {
 }
 
 impl Summary {
+    /// Counts something that can't be used.
+    pub fn drop(&mut self, problem: Problem) {
+        self.input_damaged |= matches!(problem.reason, Reason::Truncated | Reason::BadChunk);
+        self.dropped.add(problem);
+    }
+
     /// Whether every record of the input could be used.
     pub fn is_clean(&self) -> bool {
         self.dropped.total() == 0 && !self.input_damaged

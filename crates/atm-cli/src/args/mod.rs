@@ -11,7 +11,6 @@ use clap::{Parser, Subcommand};
 pub use self::{
     fuse::{Emit, Fuse},
     info::Info,
-    log::{Empty, Format, LogArgs},
     plan::Plan,
 };
 
