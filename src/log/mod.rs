@@ -2,7 +2,9 @@
 mod buffer;
 mod cell;
 mod columns;
+pub mod content;
 pub mod csv;
+pub mod echo_table;
 pub mod echoes;
 pub mod format;
 pub mod output;
