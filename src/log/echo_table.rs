@@ -139,7 +139,7 @@ impl Layout {
 }
 
 /// The reading a row belongs to, where it says both its time and its sensor.
-fn key(t: &[u8], sensor: &[u8], words: &mut Words) -> Result<Option<(i64, Arc<str>)>, Fault> {
+pub(super) fn key(t: &[u8], sensor: &[u8], words: &mut Words) -> Result<Option<(i64, Arc<str>)>, Fault> {
     if t.is_empty() {
         return Ok(None);
     }
@@ -147,18 +147,18 @@ fn key(t: &[u8], sensor: &[u8], words: &mut Words) -> Result<Option<(i64, Arc<st
     Ok(words.take(sensor).map(|sensor| (t, sensor)))
 }
 
-fn cell(record: Record<'_>, column: usize) -> &[u8] {
+pub(super) fn cell(record: Record<'_>, column: usize) -> &[u8] {
     record.get(column).unwrap_or_default()
 }
 
-fn finite(cell: &[u8], column: &str) -> Result<f64, Fault> {
+pub(super) fn finite(cell: &[u8], column: &str) -> Result<f64, Fault> {
     let value = number(cell).filter(|value| value.is_finite());
     value.ok_or_else(|| Fault::cell(Reason::BadNumber, column, cell))
 }
 
 /// Words that rows share.
 #[derive(Default)]
-struct Words(BTreeSet<Arc<str>>);
+pub(super) struct Words(BTreeSet<Arc<str>>);
 
 impl Words {
     /// The word in a cell; `None` where it is empty.

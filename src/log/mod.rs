@@ -3,6 +3,7 @@ mod buffer;
 mod cell;
 mod columns;
 pub mod content;
+pub mod crossing_table;
 pub mod csv;
 pub mod echo_table;
 pub mod echoes;

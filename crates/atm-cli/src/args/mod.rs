@@ -1,5 +1,6 @@
 //! What can stand on the command line, one file a command.
 
+mod draw;
 mod fuse;
 mod info;
 mod log;
@@ -9,6 +10,7 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub use self::{
+    draw::{Draw, PanelSpec},
     fuse::{Emit, Fuse},
     info::Info,
     log::{Empty, Format, LogArgs},
@@ -37,4 +39,6 @@ pub enum Command {
     Plan(Plan),
     /// What is in a log
     Info(Info),
+    /// Draw walls, path, arcs, crossings and echoes
+    Draw(Box<Draw>),
 }

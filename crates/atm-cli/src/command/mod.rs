@@ -1,5 +1,6 @@
 //! One file a command, each a thin adapter over the library.
 
+pub mod draw;
 pub mod fuse;
 pub mod info;
 pub mod plan;
