@@ -13,6 +13,7 @@ pub mod stamp;
 pub mod storage;
 pub mod summary;
 pub mod survey;
+mod toml_document;
 pub mod track;
 pub mod units;
 pub mod world;

@@ -11,6 +11,7 @@ pub mod format;
 pub mod output;
 pub mod poses;
 pub mod table;
+pub mod truth;
 
 use std::{fs, io, sync::Arc};
 
