@@ -14,6 +14,7 @@ mod style;
 mod svg;
 pub mod tables;
 mod thinned;
+mod world;
 
 pub use self::{
     frame::Frame,

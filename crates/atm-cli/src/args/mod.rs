@@ -1,6 +1,7 @@
 //! What can stand on the command line, one file a command.
 
 mod draw;
+mod eval;
 mod fuse;
 mod info;
 mod log;
@@ -11,6 +12,7 @@ use clap::{Parser, Subcommand};
 
 pub use self::{
     draw::{Draw, PanelSpec},
+    eval::Eval,
     fuse::{Emit, Fuse},
     info::Info,
     log::{Empty, Format, LogArgs},
@@ -39,6 +41,8 @@ pub enum Command {
     Plan(Plan),
     /// What is in a log
     Info(Info),
+    /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
+    Eval(Eval),
     /// Draw walls, path, arcs, crossings and echoes
     Draw(Box<Draw>),
 }

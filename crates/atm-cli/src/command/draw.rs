@@ -20,6 +20,7 @@ use atm::{
     },
     pipeline::Defaults,
     summary::Dropped,
+    world::World,
 };
 
 use crate::{
@@ -104,7 +105,12 @@ impl Inputs {
             };
             files.push((path, scene));
         }
-        Ok(Self { world: Scene::new(), files, only_logs })
+        let world = args.world.as_deref().map(|name| World::load(name, &args.set)).transpose()?;
+        let mut scene = world.as_ref().map(Scene::of_world).unwrap_or_default();
+        if files.is_empty() {
+            scene.path(world.iter().flat_map(|world| world.path().line()).map(Some));
+        }
+        Ok(Self { world: scene, files, only_logs })
     }
 
     fn picture(&self, args: &Draw) -> Result<Picture, Failure> {
