@@ -49,12 +49,29 @@ impl Entry {
 pub(super) fn entries(picture: &Picture, names: &Names<'_>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     let layers = picture.panels.iter().flat_map(|panel| &panel.scene.layers);
-    for entry in layers.filter(|layer| !layer.content.is_empty()).filter_map(|layer| entry(layer, names)) {
+    let mut layers: Vec<&Layer> = layers.filter(|layer| !layer.content.is_empty()).collect();
+    layers.sort_by_key(|layer| order(layer, names));
+    for entry in layers.into_iter().filter_map(|layer| entry(layer, names)) {
         if !entries.iter().any(|known| known.words == entry.words) {
             entries.push(entry);
         }
     }
     entries
+}
+
+/// What stands there first, then where the robot was, then what was made of its readings, the best of it first.
+fn order(layer: &Layer, names: &Names<'_>) -> u8 {
+    match layer.content {
+        Content::Walls(_) => 0,
+        Content::Grid(_) => 1,
+        Content::Path(_) => 2,
+        Content::Arcs(_) if layer.name != "partners" => 3,
+        Content::Beams(_) => 4,
+        Content::Arcs(_) => 5,
+        Content::Segments(_) => 6,
+        Content::Marks(_) => u8::MAX - names.marks(&layer.name).rank,
+        Content::Rings(_) | Content::Robot(_) | Content::Openings(_) => 7,
+    }
 }
 
 fn entry(layer: &Layer, names: &Names<'_>) -> Option<Entry> {
@@ -72,7 +89,7 @@ fn entry(layer: &Layer, names: &Names<'_>) -> Option<Entry> {
             let style = names.marks(name);
             (Symbol::Mark(style.mark, style.class), style.words)
         }
-        Content::Rings(_) => (Symbol::Ring, "where it is put".to_owned()),
+        Content::Rings(_) => (Symbol::Ring, "its echo".to_owned()),
         Content::Beams(_) | Content::Robot(_) | Content::Openings(_) => return None,
     };
     let (weight, size, _) = Font::Plain.parts();

@@ -190,6 +190,8 @@ pub(super) struct Layout {
     headings: f64,
     panel_width: f64,
     view: View,
+    /// Whether somebody chose what part of the plane to show.
+    chosen: bool,
     /// Middle of the legend's first line.
     pub(super) legend: f64,
 }
@@ -211,7 +213,8 @@ impl Layout {
         let panel_height = (height - top - foot).max(1.0);
         let frame = frame.with_aspect(panel_width / panel_height);
         let view = View { frame, left: MARGIN, top, scale: panel_width / frame.width() };
-        Self { width, height, headings, panel_width, view, legend: top + panel_height + 10.0 + LINE / 2.0 }
+        let chosen = picture.frame.is_some();
+        Self { width, height, headings, panel_width, view, chosen, legend: top + panel_height + 10.0 + LINE / 2.0 }
     }
 
     fn left(&self, index: usize) -> f64 {
@@ -242,7 +245,8 @@ impl Layout {
             let middle = (view.left + view.width() / 2.0, view.top + view.height() / 2.0);
             ink.text(middle, Anchor::Middle, Font::Plain, "", "nothing to draw");
         }
-        if outside > 0 {
+        // What part to show was chosen: that some is not shown is no news then.
+        if outside > 0 && !self.chosen {
             let corner = (view.left + view.width() - 6.0, view.top + view.height() - 8.0);
             ink.text(
                 corner,

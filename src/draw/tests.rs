@@ -70,7 +70,15 @@ fn every_mark_arc_and_wall_within_the_frame_is_drawn_once() {
     assert_eq!(count(scene.clone(), "arcs"), 12);
     assert_eq!(count(scene.clone(), "rough"), 2);
     assert_eq!(count(scene.clone(), "s0"), 1);
-    assert!(svg(scene).contains("1 mark lies outside"));
+}
+
+#[test]
+fn marks_left_out_are_counted_unless_the_frame_was_chosen() {
+    let mut scene = Scene::new();
+    scene.marks("median", (0..100).map(|i| point(f64::from(i) * 0.1, 1.0)).chain([point(1e6, 0.0)]));
+    assert!(!svg(scene.clone()).contains("outside"));
+    let automatic = Picture { frame: None, ..picture(scene) };
+    assert!(automatic.svg().contains(">1 mark lies outside<"));
 }
 
 #[test]

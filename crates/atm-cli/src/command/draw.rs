@@ -15,7 +15,6 @@ use atm::{
         crossing_table::CrossingTable,
         csv::{CsvReadings, PoseUse},
         echo_table::EchoTable,
-        format::Format as Found,
         output::{Output, overwrites},
     },
     pipeline::Defaults,
@@ -83,9 +82,8 @@ impl Inputs {
     fn read(args: &Draw, dropped: &mut Dropped) -> Result<Self, Failure> {
         let shown = args.reading.as_ref().map(|(t, sensor)| (*t, Arc::from(sensor.as_str())));
         let mut opened = Vec::new();
-        for path in names(args) {
-            let (found, input) = Input::open(path)?.sniff()?;
-            let (content, input) = if found == Found::Mcap { (Content::Readings, input) } else { input.content()? };
+        for path in &args.inputs {
+            let (content, input) = command::open(path, None)?.content()?;
             opened.push((path.to_owned(), content, input));
         }
         let only_logs = opened.iter().all(|(_, content, _)| *content == Content::Readings);
@@ -157,11 +155,6 @@ impl Inputs {
 /// Whether it is a kind of echoes, in the inputs or not.
 fn is_kind(name: &str) -> bool {
     Kind::ALL.iter().any(|kind| kind.name() == name)
-}
-
-/// The inputs, those that only a panel names among them.
-fn names(args: &Draw) -> impl Iterator<Item = &str> {
-    args.inputs.iter().map(String::as_str)
 }
 
 /// The layers of a log.

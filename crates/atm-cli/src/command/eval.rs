@@ -3,12 +3,12 @@
 use atm::{
     core::Kind,
     eval::{Metrics, Scores, Spread, evaluate},
-    log::{Input, echo_table::EchoTable, truth::Truth},
+    log::{echo_table::EchoTable, truth::Truth},
     summary::Dropped,
     world::World,
 };
 
-use crate::{Failure, Outcome, args::Eval, report};
+use crate::{Failure, Outcome, args::Eval, command, report};
 
 /// Inches are what the paper speaks; the table shows both.
 const INCH: f64 = 0.0254;
@@ -20,7 +20,7 @@ pub fn run(args: &Eval) -> Result<Outcome, Failure> {
     let world = World::load(&args.world, &args.set)?;
     let mut dropped = Dropped::default();
     let truth = args.truth.as_deref().map(Truth::read).transpose()?;
-    let table = EchoTable::new(Input::open(&args.input)?)?;
+    let table = EchoTable::new(command::open(&args.input, None)?)?;
     let estimates: Vec<_> = table.estimates(|problem| dropped.add(problem)).collect::<Result<_, _>>()?;
     let scores = evaluate(&estimates, &world, truth.as_ref());
     crate::print(&if args.json { as_json(&scores)? } else { as_text(&scores) })?;
@@ -36,6 +36,9 @@ fn as_json(scores: &Scores) -> Result<String, Failure> {
     Ok(text + "\n")
 }
 
+/// One kind of errors.
+type Errors = fn(&Metrics) -> &Spread;
+
 fn as_text(scores: &Scores) -> String {
     // The fuser's kinds in their order, then whatever else there is.
     let known = Kind::ALL.map(Kind::name);
@@ -50,9 +53,9 @@ fn as_text(scores: &Scores) -> String {
     let each = |cell: &dyn Fn(&Metrics) -> String| columns.iter().map(|(_, metrics)| cell(metrics)).collect();
     row("", columns.iter().map(|(name, _)| (*name).to_owned()).collect());
     row("points", each(&|metrics| metrics.points.to_string()));
-    let errors: [(&str, fn(&Metrics) -> &Spread); 2] =
-        [("azimuth error", |metrics| &metrics.azimuth_error_m), ("surface error", |metrics| &metrics.surface_error_m)];
-    for (name, spread) in errors {
+    let azimuth: Errors = |metrics| &metrics.azimuth_error_m;
+    let surface: Errors = |metrics| &metrics.surface_error_m;
+    for (name, spread) in [("azimuth error", azimuth), ("surface error", surface)] {
         row(&format!("{name:<15}p50"), each(&|metrics| length(spread(metrics).p50)));
         row(&format!("{:<15}p90", ""), each(&|metrics| length(spread(metrics).p90)));
         row(&format!("{:<15}p95", ""), each(&|metrics| length(spread(metrics).p95)));
