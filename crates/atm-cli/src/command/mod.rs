@@ -12,11 +12,11 @@ use atm::{
     error::Error,
     log::{
         Input,
-        csv::{EmptyCell, PoseUse},
+        csv::{CsvReadings, EmptyCell, PoseUse},
         format::Format as Found,
         poses::PoseLog,
     },
-    pipeline::AnyTrack,
+    pipeline::{AnyTrack, Defaults, SensorModel},
     rig::{Rig, TableFormat},
     track::Track,
 };
@@ -45,6 +45,27 @@ fn open(path: &str, from: Option<Format>) -> Result<Input, Failure> {
     match format {
         Found::Csv => Ok(input),
         _ => Err(Failure::Failed(format!("{}: {NO_MCAP}", input.name))),
+    }
+}
+
+/// A log of readings with all that it takes to use them, for commands that need its rig.
+struct Readings {
+    source: CsvReadings<Arc<Rig>>,
+    track: Option<AnyTrack>,
+    sensors: Vec<SensorModel>,
+}
+
+impl Readings {
+    fn open(input: Input, args: &LogArgs, path: &str) -> Result<Self, Failure> {
+        let rig = rig(args)?;
+        let rig = rig.ok_or_else(|| {
+            Failure::Usage(format!("{path}: a log of readings needs its sensors: name them with --rig"))
+        })?;
+        let sensors = Defaults { field_of_view: Some(args.fov), range_resolution: None }.complete(&rig)?;
+        let (format, poses) = (table_format(Some(&rig)), pose_use(args, PoseUse::Needed));
+        let source = CsvReadings::new(input, &format, poses, empty_cell(args), Arc::clone(&rig))?;
+        let track = track(args, Some(&rig))?.map(|(track, _)| track);
+        Ok(Self { source, track, sensors })
     }
 }
 
