@@ -4,6 +4,7 @@ mod fuse;
 mod info;
 mod log;
 mod plan;
+mod simulate;
 mod values;
 
 use clap::{Parser, Subcommand};
@@ -13,6 +14,7 @@ pub use self::{
     info::Info,
     log::{Empty, Format, LogArgs},
     plan::Plan,
+    simulate::Simulate,
 };
 
 /// Sharp echo points from wide-beam range sensors on a moving robot: the arc-transversal median.
@@ -37,4 +39,6 @@ pub enum Command {
     Plan(Plan),
     /// What is in a log
     Info(Info),
+    /// Drive a robot through a world and write its log
+    Simulate(Simulate),
 }

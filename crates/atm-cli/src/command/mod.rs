@@ -3,6 +3,7 @@
 pub mod fuse;
 pub mod info;
 pub mod plan;
+pub mod simulate;
 
 use std::sync::Arc;
 
