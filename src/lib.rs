@@ -9,6 +9,7 @@ pub mod intake;
 pub mod log;
 pub mod pipeline;
 pub mod rig;
+pub mod simulate;
 pub mod stamp;
 pub mod storage;
 pub mod summary;

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     eval::doorway::{DOORWAY_DEPTH, Gap},
-    world::rough::inches,
+    units::inches,
 };
 
 /// Steps of the path shorter than this many pixels are joined.

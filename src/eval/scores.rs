@@ -11,7 +11,8 @@ use crate::{
         echo_table::Estimate,
         truth::{Cause, Truth},
     },
-    world::{World, rough::inches},
+    units::inches,
+    world::World,
 };
 
 /// A point farther than this from every surface is a ghost, in metres.

@@ -1,6 +1,6 @@
 use clap::Args;
 
-use super::{log::LogArgs, values::setting};
+use super::{log::LogArgs, values::parameter};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -14,7 +14,7 @@ pub struct Eval {
     #[arg(long, value_name = "NAME|FILE")]
     pub world: String,
     /// A parameter of the world, such as opening=30in
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = parameter)]
     pub set: Vec<(String, String)>,
     /// Where each reading's echo really came from, as atm simulate --truth writes it
     #[arg(long, value_name = "FILE")]

@@ -6,6 +6,7 @@ mod fuse;
 mod info;
 mod log;
 mod plan;
+mod simulate;
 mod values;
 
 use clap::{Parser, Subcommand};
@@ -17,6 +18,7 @@ pub use self::{
     info::Info,
     log::{Empty, Format, LogArgs},
     plan::Plan,
+    simulate::Simulate,
 };
 
 /// Sharp echo points from wide-beam range sensors on a moving robot: the arc-transversal median.
@@ -41,6 +43,8 @@ pub enum Command {
     Plan(Plan),
     /// What is in a log
     Info(Info),
+    /// Drive a robot through a world and write its log
+    Simulate(Simulate),
     /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
     Eval(Eval),
     /// Draw walls, path, arcs, crossings and echoes

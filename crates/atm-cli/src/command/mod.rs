@@ -5,6 +5,7 @@ pub mod eval;
 pub mod fuse;
 pub mod info;
 pub mod plan;
+pub mod simulate;
 
 use std::sync::Arc;
 
