@@ -101,9 +101,25 @@ impl OpenLog {
             Self::Mcap(log) => Some(log),
         }
     }
+
+    /// The log itself, and the second file's poses where it does not see to those.
+    pub fn source(&mut self) -> (&mut dyn Source, Option<&mut AnyTrack>) {
+        match self {
+            Self::Csv(log, track) => (&mut **log, track.as_mut()),
+            Self::Mcap(log) => (&mut **log, None),
+        }
+    }
 }
 
 impl LogJob {
+    /// The rig's sensors, completed; none without a rig, where a recording says itself what it saw.
+    ///
+    /// # Errors
+    /// As [`Defaults::complete`].
+    pub fn sensors(&self) -> Result<Vec<SensorModel>> {
+        self.rig.as_deref().map_or_else(|| Ok(Vec::new()), |rig| self.defaults.complete(rig))
+    }
+
     /// Opens the log itself, and says what it is.
     ///
     /// # Errors
@@ -171,16 +187,16 @@ impl LogJob {
         }
     }
 
-    /// Opens the log with the sensors and poses it needs, and says how long it is. `everything`: what a recording holds besides is
-    /// wanted, too.
-    fn readings(&self, everything: bool) -> Result<(OpenLog, Option<u64>)> {
-        let (format, input) = self.open()?;
-        let length = input.length;
+    /// The log that was opened, with the sensors and poses it needs. `everything`: what a recording holds besides is wanted, too.
+    ///
+    /// # Errors
+    /// It can't be read, is none, lacks columns or poses; a table without a rig.
+    pub fn readings(&self, format: Format, input: Input, everything: bool) -> Result<OpenLog> {
         let track = self.track()?.map(|(track, _)| track);
         if format != Format::Csv {
             let options = Options { everything, ..self.options(PoseUse::Needed) };
             let log = McapReadings::open(&self.input, input, self.rig.clone(), track, options)?;
-            return Ok((OpenLog::Mcap(Box::new(log)), length));
+            return Ok(OpenLog::Mcap(Box::new(log)));
         }
         if everything {
             let message = format!("--passthrough: {} is a table, no recording that could be copied", input.name);
@@ -190,7 +206,7 @@ impl LogJob {
         let poses = if track.is_some() { PoseUse::Ignored } else { PoseUse::Needed };
         let format = rig.log().map(|formats| formats.readings.clone()).unwrap_or_default();
         let log = CsvReadings::new(input, &format, poses, self.empty, Arc::clone(rig))?;
-        Ok((OpenLog::Csv(Box::new(log), track), length))
+        Ok(OpenLog::Csv(Box::new(log), track))
     }
 }
 
@@ -297,11 +313,10 @@ impl FuseJob {
     /// What keeps it from beginning; what ends it later is in [`Ended::result`].
     pub fn run(&self, settings: &Settings, progress: &mut Progress<'_>) -> Result<Ended> {
         self.check()?;
-        let (mut log, length) = self.log.readings(self.passthrough)?;
-        let sensors = match self.log.rig {
-            Some(_) => self.log.models()?,
-            None => Vec::new(),
-        };
+        let (format, input) = self.log.open()?;
+        let length = input.length;
+        let mut log = self.log.readings(format, input, self.passthrough)?;
+        let sensors = self.log.sensors()?;
         let input = outputs::Input {
             ids: self.log.rig.as_deref().map(Rig::ids).unwrap_or_default(),
             mounts: sensors.iter().map(|sensor| sensor.mount).collect(),
@@ -312,10 +327,7 @@ impl FuseJob {
             log.set_tap(tap);
         }
         let counts = self.summary.as_deref().map(Output::create).transpose()?;
-        let (source, track): (&mut dyn Source, _) = match &mut log {
-            OpenLog::Csv(log, track) => (&mut **log, track.as_mut()),
-            OpenLog::Mcap(log) => (&mut **log, None),
-        };
+        let (source, track) = log.source();
         let mut watched = Watched::new(source, length, progress);
         let fused = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
         let (summary, result) = fused;

@@ -2,16 +2,20 @@
 //! (Choset, Nagatani, Lazar 2003), on logs.
 pub use atm_core as core;
 
+pub mod draw;
 pub mod error;
+pub mod eval;
 pub mod intake;
 pub mod job;
 pub mod log;
 pub mod pipeline;
 pub mod rig;
+pub mod simulate;
 pub mod stamp;
 pub mod storage;
 pub mod summary;
 pub mod survey;
+mod toml_document;
 pub mod track;
 pub mod units;
 pub mod world;

@@ -2,13 +2,18 @@
 mod buffer;
 mod cell;
 mod columns;
+pub mod content;
+pub mod crossing_table;
 pub mod csv;
+pub mod echo_table;
 pub mod echoes;
 pub mod format;
 pub mod mcap;
 pub mod output;
 pub mod poses;
 pub mod table;
+pub mod truth;
+pub mod writer;
 
 use std::{fs, io, sync::Arc};
 

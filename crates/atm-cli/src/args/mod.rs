@@ -1,17 +1,24 @@
 //! What can stand on the command line, one file a command.
 
+mod draw;
+mod eval;
 mod fuse;
 mod info;
 mod log;
 mod plan;
+mod simulate;
 mod values;
 
 use clap::{Parser, Subcommand};
 
 pub use self::{
+    draw::{Draw, PanelSpec},
+    eval::Eval,
     fuse::{Emit, Fuse},
     info::Info,
+    log::Format,
     plan::Plan,
+    simulate::Simulate,
 };
 
 /// Sharp echo points from wide-beam range sensors on a moving robot: the arc-transversal median.
@@ -36,4 +43,10 @@ pub enum Command {
     Plan(Plan),
     /// What is in a log
     Info(Info),
+    /// Drive a robot through a world and write its log
+    Simulate(Simulate),
+    /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
+    Eval(Eval),
+    /// Draw walls, path, arcs, crossings and echoes
+    Draw(Box<Draw>),
 }

@@ -92,3 +92,11 @@ pub fn bytes(text: &str) -> Result<u64, String> {
         _ => Err(format!("{text} is no positive number of bytes")),
     }
 }
+
+/// `KEY=VALUE`, as it stands: what keys there are depends on the world.
+pub fn parameter(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
+        _ => Err(format!("{text} is not KEY=VALUE, like opening=36in")),
+    }
+}
