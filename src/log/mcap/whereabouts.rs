@@ -10,7 +10,6 @@ use crate::{
     error::{Problem, Reason, Result},
     log::Frames,
     pipeline::AnyTrack,
-    stamp,
     track::Pose,
 };
 
@@ -79,13 +78,13 @@ impl Lost {
         Self { reason: Reason::NoTransform, words: words.into() }
     }
 
-    fn gap(t: i64, words: impl std::fmt::Display) -> Self {
-        Self { reason: Reason::NoPose, words: format!("t {}: {words}", stamp::text(t)) }
+    fn gap(words: impl Into<String>) -> Self {
+        Self { reason: Reason::NoPose, words: words.into() }
     }
 
-    fn missed(t: i64, miss: Miss) -> Self {
+    fn missed(miss: Miss) -> Self {
         match miss {
-            Miss::Gap(frames) => Self::gap(t, format_args!("no transform of {frames} on both sides")),
+            Miss::Gap(frames) => Self::gap(format!("no transform of {frames} on both sides")),
             Miss::Apart(words) => Self::apart(words),
         }
     }
@@ -184,7 +183,7 @@ impl Whereabouts {
         self.asked = Some(seat.t);
         if let Some(Chosen::Track(track)) = &mut self.chosen {
             let Some(pose) = track.pose_at(self.epoch, seat.t, problems)? else {
-                return Ok(Err(Lost::gap(seat.t, "no pose on both sides")));
+                return Ok(Err(Lost::gap("no pose on both sides")));
             };
             let robot = Rigid::flat(pose.x, pose.y, libm::cos(pose.yaw), libm::sin(pose.yaw));
             let mount = self.mount(seat, None);
@@ -212,7 +211,7 @@ impl Whereabouts {
         let by_topic = || {
             let topics = self.topics.iter().enumerate().filter(|(_, topic)| is_wished(topic));
             let mut usable = topics.map(|(index, topic)| self.mount(seat, topic.child).map(|_| Chosen::Topic(index)));
-            usable.next().unwrap_or_else(|| Err(Lost::gap(seat.t, "no poses yet")))
+            usable.next().unwrap_or_else(|| Err(Lost::gap("no poses yet")))
         };
         // A wish for a topic of transforms is one for the tree; that there is such a topic was checked.
         if self.wish.topic.as_ref().is_some_and(|wish| self.topics.iter().any(|topic| topic.name == *wish)) {
@@ -277,14 +276,14 @@ impl Whereabouts {
     }
 
     fn by_tree(&self, seat: Seat, fixed: Frame) -> Result<Placed, Lost> {
-        let missed = |miss| Lost::missed(seat.t, miss);
         if let Some(mount) = seat.mount {
-            let robot = self.tree.lookup(self.robot_frame()?, fixed, seat.t, self.max_gap).map_err(missed)?;
+            let robot = self.tree.lookup(self.robot_frame()?, fixed, seat.t, self.max_gap).map_err(Lost::missed)?;
             return Ok(Placed { robot: robot.on_plane(), sensor: robot.of(&mount) });
         }
         let frame = seat.frame.ok_or_else(|| Lost::apart("the reading names no frame"))?;
-        let sensor = self.tree.lookup(frame, fixed, seat.t, self.max_gap).map_err(missed)?;
-        let robot = self.tree.lookup(self.robot_below(frame, fixed), fixed, seat.t, self.max_gap).map_err(missed)?;
+        let sensor = self.tree.lookup(frame, fixed, seat.t, self.max_gap).map_err(Lost::missed)?;
+        let robot =
+            self.tree.lookup(self.robot_below(frame, fixed), fixed, seat.t, self.max_gap).map_err(Lost::missed)?;
         Ok(Placed { robot: robot.on_plane(), sensor })
     }
 
@@ -296,12 +295,12 @@ impl Whereabouts {
 
     fn by_topic(&self, seat: Seat, topic: &Topic) -> Result<Placed, Lost> {
         let robot = topic.history.at(seat.t, self.max_gap);
-        let robot = robot.ok_or_else(|| Lost::gap(seat.t, format_args!("no pose of {} on both sides", topic.name)))?;
+        let robot = robot.ok_or_else(|| Lost::gap(format!("no pose of {} on both sides", topic.name)))?;
         let robot = match self.wish.fixed.as_deref() {
             Some(name) => {
                 let fixed = self.tree.find(name).ok_or_else(|| Lost::apart(format!("there is no frame `{name}`")))?;
                 let outer = self.tree.lookup(topic.frame, fixed, seat.t, self.max_gap);
-                outer.map_err(|miss| Lost::missed(seat.t, miss))?.of(&robot)
+                outer.map_err(Lost::missed)?.of(&robot)
             }
             None => robot,
         };
@@ -323,7 +322,7 @@ impl Whereabouts {
         let mount = self.tree.lookup(frame, child, seat.t, self.max_gap);
         mount.map_err(|miss| match miss {
             Miss::Apart(words) => Lost::apart(format!("{words}; give the sensor's mount with --rig")),
-            gap => Lost::missed(seat.t, gap),
+            gap => Lost::missed(gap),
         })
     }
 
