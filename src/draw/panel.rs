@@ -15,6 +15,8 @@ use crate::{
     units::inches,
 };
 
+/// Circles of a larger radius, in pixels, are not drawn: what renders them has single precision.
+const LARGEST: f64 = 1e6;
 /// Steps of the path shorter than this many pixels are joined.
 const SHORTEST_STEP: f64 = 0.5;
 /// Height of a letter, and of the words over a dimension line, and half the length of its ticks, in pixels.
@@ -65,13 +67,13 @@ impl View {
         path.arc_to(cone.range * self.scale, self.x(left.x), self.y(left.y));
     }
 
-    /// Whether something of the beam may be seen: its circle around the sensor reaches into the frame.
+    /// Whether something of the beam may be seen: its circle around the sensor reaches into the frame, and can be drawn.
     fn sees(&self, cone: &Cone) -> bool {
         let (sensor, frame) = (cone.sensor.translation.vector, &self.frame);
         let beside = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
         let x = beside(sensor.x, frame.min().x, frame.max().x);
         let y = beside(sensor.y, frame.min().y, frame.max().y);
-        libm::hypot(x, y) <= cone.range
+        libm::hypot(x, y) <= cone.range && cone.range * self.scale <= LARGEST
     }
 }
 
@@ -91,7 +93,8 @@ pub(super) fn draw(scene: &Scene, view: &View, names: &Names<'_>, ink: &mut Ink)
             Content::Walls(all) => walls(layer, all, view, ink),
             Content::Path(path) => trail(path.iter().copied(), view, ink),
             Content::Beams(cones) => beams(cones, view, style::of_beams(&layer.name), ink),
-            Content::Robot(robot) => body(robot, view, ink),
+            Content::Robot(robot) if robot.radius * view.scale <= LARGEST => body(robot, view, ink),
+            Content::Robot(_) => {}
             Content::Segments(all) => {
                 let mut path = PathData::default();
                 all.iter().for_each(|segment| view.line(&mut path, *segment));
@@ -150,17 +153,19 @@ fn beams(cones: &[Cone], view: &View, class: &str, ink: &mut Ink) {
 }
 
 fn walls(layer: &Layer, walls: &[Wall], view: &View, ink: &mut Ink) {
-    let mut path = PathData::default();
+    let (mut path, mut posts) = (PathData::default(), PathData::default());
     for wall in walls {
         match *wall {
             Wall::Straight(ends) => view.line(&mut path, ends),
-            Wall::Round(center, radius) if view.frame.holds(center) => {
-                path.circle(view.x(center.x), view.y(center.y), (radius * view.scale).max(1.0));
+            Wall::Round(center, radius) if view.frame.holds(center) && radius * view.scale <= LARGEST => {
+                posts.circle(view.x(center.x), view.y(center.y), (radius * view.scale).max(1.0));
             }
             Wall::Round(..) => {}
         }
     }
-    path.write(style::of_wall(layer.material()), &mut ink.svg);
+    let class = style::of_wall(layer.material());
+    path.write(class, &mut ink.svg);
+    posts.write(&format!("{class} post"), &mut ink.svg);
 }
 
 fn trail(places: impl Iterator<Item = Option<Point2<f64>>>, view: &View, ink: &mut Ink) {

@@ -10,7 +10,7 @@ text,.t{font:13px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#444}.t1,.t2{fon
 .d{font-weight:bold;font-size:15px}.d0{fill:#111}.d1{fill:#d55e00}.d2{fill:#0072b2}.m{text-anchor:middle}.e{text-anchor:end}\
 path{fill:none}.paper{fill:#fff}.border{fill:none;stroke:#ddd}.thin{stroke:#555}\
 .rough{stroke:#bdbdbd;stroke-width:7}.diffuse{stroke:#cdbfae;stroke-width:7}.specular{stroke:#7b93a8;stroke-width:3}\
-.solid{stroke:#bdbdbd;stroke-width:7}\
+.solid{stroke:#bdbdbd;stroke-width:7}.post{stroke:none;fill:#bdbdbd}.diffuse.post{fill:#cdbfae}.specular.post{fill:#7b93a8}\
 .path{stroke:#888;stroke-width:1.5;stroke-dasharray:1.5 3}.arcs{stroke:#555;stroke-opacity:.35}\
 .faint{stroke:#555;stroke-opacity:.12}.partners{stroke:#555}\
 .beam{fill:#777;fill-opacity:.2;stroke:#666}.beams{fill:#777;fill-opacity:.07;stroke:#777;stroke-opacity:.3}\
@@ -83,17 +83,17 @@ pub(super) struct MarkStyle {
 
 /// Names of marks that come with a look of their own: name, class, shape, rank, words.
 const NAMED: [(&str, &str, Mark, u8, &str); 8] = [
-    ("crossings", "crossings", Mark::Speck, 0, "crossings"),
-    ("centerline", "center", Mark::SmallDisc, 2, "centre of the cone"),
-    ("center", "center", Mark::SmallDisc, 3, "center (no crossing)"),
-    ("near", "near", Mark::Square, 4, "near"),
-    ("pair", "pair", Mark::Triangle, 5, "pair"),
-    ("single", "single", Mark::Plus, 6, "single"),
-    ("median", "median", Mark::Disc, 7, "median"),
-    ("truth", "truth", Mark::Tick, 8, "true echo points"),
+    ("truth", "truth", Mark::Tick, 0, "true echo points"),
+    ("crossings", "crossings", Mark::Speck, 1, "crossings"),
+    ("centerline", "center", Mark::SmallDisc, 3, "centre of the cone"),
+    ("center", "center", Mark::SmallDisc, 4, "center (no crossing)"),
+    ("near", "near", Mark::Square, 5, "near"),
+    ("pair", "pair", Mark::Triangle, 6, "pair"),
+    ("single", "single", Mark::Plus, 7, "single"),
+    ("median", "median", Mark::Disc, 8, "median"),
 ];
 /// The rank of all other marks.
-const RANK: u8 = 1;
+const RANK: u8 = 2;
 const SHAPES: [Mark; OTHERS] = [Mark::Diamond, Mark::Circle, Mark::Square, Mark::Circle];
 
 /// The names in a picture that have no look of their own, each once, in order: their place among them gives them one.
