@@ -292,7 +292,7 @@ impl Records {
                 return self.data_end(window, &frame, checksum);
             }
             0 => {
-                let lost = self.rest(&mut window)?;
+                let lost = self.lost_from(&mut window, byte);
                 let words = format!("no record begins here; the {lost} bytes from here on are lost");
                 self.arena.problem(Reason::Truncated, byte, words);
                 return Ok(Stage::Ended);
@@ -311,8 +311,7 @@ impl Records {
 
     /// The file ends within the record that begins at `byte`.
     fn cut(&mut self, mut window: Window<Recording>, byte: u64, what: &str) -> Stage {
-        let lost = self.rest(&mut window).unwrap_or_default() + (window.position() - byte);
-        let lost = window.length().map_or(lost, |length| length.saturating_sub(byte));
+        let lost = self.lost_from(&mut window, byte);
         let words = match lost {
             0 => "cut off: the file ends without an end of the data; 0 bytes are lost".to_owned(),
             _ => format!("cut off: the last {lost} bytes, the beginning of {what}, are lost"),
@@ -321,12 +320,23 @@ impl Records {
         Stage::Ended
     }
 
-    /// Uses up all there is, and says how much that was.
-    fn rest(&mut self, window: &mut Window<Recording>) -> io::Result<u64> {
-        if let Some(length) = window.length() {
-            return Ok(length.saturating_sub(window.position()));
-        }
-        window.skip(u64::MAX)
+    /// The file ends behind its data, within what begins at `byte`.
+    fn cut_summary(&mut self, mut window: Window<Recording>, byte: u64) -> Stage {
+        let lost = self.lost_from(&mut window, byte);
+        let words = format!("cut off behind the data: no message is lost, and of the summary the last {lost} bytes");
+        self.arena.problem(Reason::Truncated, byte, words);
+        Stage::Ended
+    }
+
+    /// Bytes from `byte` to the end.
+    fn lost_from(&mut self, window: &mut Window<Recording>, byte: u64) -> u64 {
+        let end = window.length().unwrap_or_else(|| {
+            // What can't be read any more can't be counted.
+            let _ = window.skip(u64::MAX);
+            window.position()
+        });
+        self.position = end;
+        end.saturating_sub(byte)
     }
 
     /// Takes one record in, its head used up: keeps it, or passes over it.
@@ -423,21 +433,21 @@ impl Records {
     fn summary_record(&mut self, mut window: Window<Recording>) -> io::Result<Stage> {
         let byte = window.position();
         let Some(head) = window.peek::<HEAD>()? else {
-            return Ok(self.cut(window, byte, "a record of the summary (no message)"));
+            return Ok(self.cut_summary(window, byte));
         };
         let frame = framed(head, byte);
         let end = byte.saturating_add(HEAD as u64).saturating_add(frame.length);
         let cut = window.length().is_some_and(|length| end > length);
         window.use_up(HEAD);
         if cut || window.skip(frame.length)? < frame.length {
-            return Ok(self.cut(window, byte, "a record of the summary (no message)"));
+            return Ok(self.cut_summary(window, byte));
         }
         if frame.opcode != op::FOOTER {
             return Ok(Stage::Summary(window));
         }
         let byte = window.position();
         if window.peek()? != Some(MAGIC) {
-            return Ok(self.cut(window, byte, "the mark of the end (no message)"));
+            return Ok(self.cut_summary(window, byte));
         }
         window.use_up(MAGIC.len());
         self.position = window.position();
