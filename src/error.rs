@@ -16,7 +16,10 @@ pub struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.file, self.line)
+        match self.line {
+            0 => write!(f, "{}, byte {}", self.file, self.byte),
+            line => write!(f, "{}:{line}", self.file),
+        }
     }
 }
 
@@ -38,8 +41,30 @@ pub enum Reason {
     NoPose,
     /// Earlier than the latest usable record.
     TimeBackwards,
-    /// A record longer than [`crate::log::table::MAX_RECORD`] bytes.
+    /// A record longer than [`crate::log::table::MAX_RECORD`] bytes, or than a recording's messages may be.
     TooLong,
+    /// A message that is not what its schema says, or that nothing describes.
+    BadMessage,
+    /// A channel whose type can't be read.
+    BadSchema,
+    /// A chunk that can't be unpacked, or whose checksum is wrong.
+    BadChunk,
+    /// The file ends in the middle of something, or what follows is no record.
+    Truncated,
+    /// A message without a time stamp.
+    NoStamp,
+    /// A transform that is none, or that the tree of frames has no place for.
+    BadTransform,
+    /// The sensor's frame does not hang together with the frame of the poses.
+    NoTransform,
+    /// A sensor's readings under a second topic.
+    SharedFrame,
+    /// Limits that leave no range, or a beam that is none.
+    BadLimits,
+    /// A sensor that only says whether something is there (REP 117).
+    FixedDistance,
+    /// The boresight points out of the plane.
+    Tilted,
 }
 
 impl Reason {
@@ -54,6 +79,17 @@ impl Reason {
             Self::NoPose => "no_pose",
             Self::TimeBackwards => "time_backwards",
             Self::TooLong => "too_long",
+            Self::BadMessage => "bad_message",
+            Self::BadSchema => "bad_schema",
+            Self::BadChunk => "bad_chunk",
+            Self::Truncated => "truncated",
+            Self::NoStamp => "no_stamp",
+            Self::BadTransform => "bad_transform",
+            Self::NoTransform => "no_transform",
+            Self::SharedFrame => "shared_frame",
+            Self::BadLimits => "bad_limits",
+            Self::FixedDistance => "fixed_distance",
+            Self::Tilted => "tilted",
         }
     }
 }

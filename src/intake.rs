@@ -145,7 +145,7 @@ pub fn read(
         if source.drained() {
             intake.consumer.wait()?;
         }
-        let next = source.next_row(&mut row, &mut |problem| intake.summary.dropped.add(problem))?;
+        let next = source.next_row(&mut row, &mut |problem| intake.summary.drop(problem))?;
         if source.ids().len() > known {
             known = source.ids().len();
             intake.consumer.sensors(source.ids())?;
@@ -214,7 +214,7 @@ impl<C: Consumer> Intake<'_, C> {
             return Ok(row.pose);
         };
         let summary = &mut *self.summary;
-        track.pose_at(self.epoch, row.t, &mut |problem| summary.dropped.add(problem))
+        track.pose_at(self.epoch, row.t, &mut |problem| summary.drop(problem))
     }
 }
 

@@ -2,8 +2,11 @@
 //! (Choset, Nagatani, Lazar 2003), on logs.
 pub use atm_core as core;
 
+pub mod draw;
 pub mod error;
+pub mod eval;
 pub mod intake;
+pub mod job;
 pub mod log;
 pub mod pipeline;
 pub mod rig;

@@ -30,7 +30,7 @@ pub struct Summary {
     pub dropped: Dropped,
     /// Times at which the clock was taken to have been set back.
     pub clock_resets: u64,
-    /// Whether the input ends in the middle of something.
+    /// Whether the input ends in the middle of something, or some of it can't be unpacked.
     pub input_damaged: bool,
 }
 
@@ -83,6 +83,13 @@ impl Dropped {
         self.0.entry(problem.reason).and_modify(|(count, _)| *count += 1).or_insert((1, problem));
     }
 
+    /// Counts what another file had after it; the first of each reason stays.
+    pub fn extend(&mut self, other: Self) {
+        for (reason, (count, first)) in other.0 {
+            self.0.entry(reason).and_modify(|(all, _)| *all += count).or_insert((count, first));
+        }
+    }
+
     /// Each reason met, with its count and its first record.
     pub fn iter(&self) -> impl Iterator<Item = (Reason, u64, &Problem)> {
         self.0.iter().map(|(&reason, (count, first))| (reason, *count, first))
@@ -100,6 +107,12 @@ impl Dropped {
 }
 
 impl Summary {
+    /// Counts something that can't be used.
+    pub fn drop(&mut self, problem: Problem) {
+        self.input_damaged |= matches!(problem.reason, Reason::Truncated | Reason::BadChunk);
+        self.dropped.add(problem);
+    }
+
     /// Whether every record of the input could be used.
     pub fn is_clean(&self) -> bool {
         self.dropped.total() == 0 && !self.input_damaged

@@ -1,6 +1,6 @@
 //! What is in a log: sensors, counts, rates, time span, poses, problems.
 
-use atm_core::{Limits, Meaning};
+use atm_core::{Beam, Limits, Meaning};
 
 use crate::{
     error::Result,
@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// One sensor's part in a log.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SensorSurvey {
     /// Readings, those without echo included.
     pub readings: u64,
@@ -19,6 +19,8 @@ pub struct SensorSurvey {
     pub no_echo: u64,
     /// Readings equal to the sensor's previous one.
     pub held: u64,
+    /// Limits and beam of its last reading, where the log says them.
+    pub sight: Option<(Limits<f64>, Beam<f64>)>,
     span: Option<(i64, i64)>,
 }
 
@@ -50,7 +52,8 @@ pub struct Survey {
     pub longest_gap: Option<(u64, i64)>,
 }
 
-/// Reads a log to its end. `limits` say by the sensor's index what is an echo; sensors beyond them have none.
+/// Reads a log to its end. `limits` say by the sensor's index what is an echo where the log does not say it itself; sensors beyond
+/// them have none.
 ///
 /// # Errors
 /// The log can't be read on.
@@ -93,7 +96,8 @@ impl Survey {
         self.start = self.start.or(Some(row.t));
         self.end = Some(row.t);
         self.empty += row.empty;
-        for &(sensor, range) in &row.readings {
+        for (number, &(sensor, range)) in row.readings.iter().enumerate() {
+            let view = row.views.get(number);
             let index = usize::from(sensor);
             if index >= self.sensors.len() {
                 self.sensors.resize(index + 1, SensorSurvey::default());
@@ -101,10 +105,11 @@ impl Survey {
             if index >= last.len() {
                 last.resize(index + 1, None);
             }
-            let limits = limits.get(index).copied().unwrap_or(Limits::NONE);
+            let limits = view.map(|view| view.limits).or_else(|| limits.get(index).copied()).unwrap_or(Limits::NONE);
             let echo = limits.classify(range);
             if let (Some(seen), Some(last)) = (self.sensors.get_mut(index), last.get_mut(index)) {
                 seen.readings += 1;
+                seen.sight = view.map(|view| (view.limits, view.beam)).or(seen.sight);
                 seen.no_echo += u64::from(echo.meaning() != Meaning::Echo);
                 let value = echo.echo().unwrap_or(f64::NAN);
                 seen.held += u64::from(last.replace(value).is_some_and(|last| last.total_cmp(&value).is_eq()));

@@ -37,6 +37,11 @@ impl<W: Write> TableWriter<W> {
         Ok(Self { out, row: Vec::with_capacity(256), ids: ids.into_iter().map(quoted).collect() })
     }
 
+    /// More sensors are known: `ids` are all of them.
+    pub fn set_ids<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
+        self.ids = ids.into_iter().map(quoted).collect();
+    }
+
     /// Writes one echo.
     pub fn echo(&mut self, echo: &Echo<f64>) -> io::Result<()> {
         self.row.clear();

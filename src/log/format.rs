@@ -6,7 +6,7 @@ use super::Input;
 use crate::error::{Error, Result};
 
 /// The first bytes of an MCAP file (mcap.dev/spec).
-const MCAP_MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
+pub const MCAP_MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
 
 /// The formats that can be told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +16,13 @@ pub enum Format {
     Csv,
     /// An MCAP recording.
     Mcap,
+}
+
+impl Format {
+    /// What a file is by its name.
+    pub fn of_name(path: &str) -> Self {
+        if path.to_ascii_lowercase().ends_with(".mcap") { Self::Mcap } else { Self::Csv }
+    }
 }
 
 impl Input {

@@ -2,9 +2,13 @@
 mod buffer;
 mod cell;
 mod columns;
+pub mod content;
+pub mod crossing_table;
 pub mod csv;
+pub mod echo_table;
 pub mod echoes;
 pub mod format;
+pub mod mcap;
 pub mod output;
 pub mod poses;
 pub mod table;
@@ -25,7 +29,8 @@ use crate::{
 pub enum Next {
     /// The next record was read.
     Record,
-    /// The next record can't be used: its problem was reported, and the log can be asked on.
+    /// What comes next gives no record: it can't be used, and its problem was reported, or it is no reading. The log can be
+    /// asked on.
     Unusable,
     /// There are no more records.
     End,
@@ -44,6 +49,19 @@ pub struct View {
     pub range_resolution: RangeResolution<f64>,
 }
 
+/// What the frames of a log are called, where it names them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Frames {
+    /// The frame of the poses.
+    pub fixed: Arc<str>,
+    /// The robot.
+    pub robot: Arc<str>,
+    /// The log itself has transforms that say where the robot is.
+    pub has_robot: bool,
+    /// The log itself has transforms that say where the sensors sit.
+    pub has_mounts: bool,
+}
+
 /// One record of a log: the readings of one instant, and where the robot was. Reused from record to record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -58,6 +76,8 @@ pub struct Row {
     /// One for each of `readings` where the log says itself where its sensors were and what they saw; else empty, and that
     /// follows from `pose` and the sensors' models.
     pub views: Vec<View>,
+    /// What its frames are called, where the log names them.
+    pub frames: Option<Arc<Frames>>,
     /// Empty cells that were skipped: sensors that did not fire.
     pub empty: u64,
     /// Where the record begins.
@@ -67,7 +87,7 @@ pub struct Row {
 impl Default for Row {
     fn default() -> Self {
         let place = Place { file: Arc::from(""), line: 0, byte: 0 };
-        Self { t: 0, log_time: 0, pose: None, readings: Vec::new(), views: Vec::new(), empty: 0, place }
+        Self { t: 0, log_time: 0, pose: None, readings: Vec::new(), views: Vec::new(), frames: None, empty: 0, place }
     }
 }
 

@@ -60,7 +60,8 @@ pub fn unusable(dropped: &Dropped) -> Option<String> {
     let mut text = format!("unusable  {} records", dropped.total());
     for (reason, count, first) in dropped.iter() {
         let place = &first.place;
-        let _ = write!(text, "\n  {count} {}, first at {place} (byte {}): {}", reason.key(), place.byte, first.value);
+        let byte = if place.line > 0 { format!(" (byte {})", place.byte) } else { String::new() };
+        let _ = write!(text, "\n  {count} {}, first at {place}{byte}: {}", reason.key(), first.value);
     }
     Some(text)
 }

@@ -246,23 +246,3 @@ fn bytes_that_are_no_text_never_panic() {
     let behind_a_header: Vec<u8> = b"t,sensor,range,x,y,yaw\n".iter().copied().chain(noise).collect();
     fuse_text(behind_a_header, &[]).exits(3);
 }
-
-#[test]
-fn mcap_is_refused_with_a_clear_message() {
-    let scratch = Scratch::new();
-    let bytes = b"\x89MCAP0\r\n\x01rest";
-    // By its content, whatever it is called.
-    for name in ["drive.mcap", "drive.csv"] {
-        let log = scratch.file(name, bytes);
-        for command in ["fuse", "info"] {
-            atm([command, &log, "--rig", "nomad200"])
-                .exits(1)
-                .says(&[&log, "MCAP is not supported yet"])
-                .writes_nothing();
-        }
-        // A recording says itself which sensors made it: nobody is sent to look for a rig.
-        atm(["fuse", &log]).exits(1).says(&[&log, "MCAP is not supported yet"]);
-    }
-    fuse_text(bytes, &[]).exits(1).says(&["standard input", "MCAP is not supported yet"]);
-    fuse_sample(&["--from", "mcap"]).exits(1).says(&[SAMPLE, "MCAP"]);
-}

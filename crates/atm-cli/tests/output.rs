@@ -174,16 +174,6 @@ fn outputs_that_can_not_be_written_are_named() {
 }
 
 #[test]
-fn mcap_out_is_refused_before_anything_is_read() {
-    let scratch = Scratch::new();
-    let out = scratch.name("echoes.mcap");
-    fuse_sample(&["-o", &out]).exits(2).says(&[&out, "MCAP is not supported yet"]).writes_nothing();
-    fuse_sample(&["--to", "mcap"]).exits(2).says(&["MCAP is not supported yet"]).writes_nothing();
-    fuse_sample(&["-o", &out, "--to", "csv"]).exits(0);
-    assert_same(read(&out).as_bytes(), &fuse_sample(&[]).stdout);
-}
-
-#[test]
 fn a_reader_that_closes_early_is_no_error() {
     let scratch = Scratch::new();
     // Far more than a pipe holds, so that the writer surely meets the closed end.

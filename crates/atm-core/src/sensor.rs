@@ -67,6 +67,16 @@ impl<T: Scalar> Limits<T> {
         Ok(Self { min, max })
     }
 
+    /// From which distance on a reading is an echo, in metres.
+    pub const fn min(&self) -> T {
+        self.min
+    }
+
+    /// Below which distance a reading is an echo, in metres; possibly +∞.
+    pub const fn max(&self) -> T {
+        self.max
+    }
+
     /// What a raw reading in metres means. ±∞ as in REP 117; a reading at its maximum is none.
     pub fn classify(&self, range: T) -> Range<T> {
         if range >= self.max {

@@ -84,9 +84,9 @@ pub mod named {
         )*};
     }
 
-    words! { emit on_none on_two name id }
-    optional_words! { empty from_ to topic }
-    flags! { drop_held strict }
+    words! { emit on_none on_two name id schema }
+    optional_words! { empty from_ to topic pose_topic fixed_frame clock }
+    flags! { drop_held strict passthrough }
 
     /// Where it has to be given or has a default of its own.
     pub fn range_step(value: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -151,6 +151,16 @@ pub fn choice<T: Copy>(argument: &str, word: &str, choices: &[(&str, T)]) -> PyR
         let names: Vec<&str> = choices.iter().map(|&(name, _)| name).collect();
         raise::value(argument, format_args!("{word:?} is none of {}", names.join(", ")))
     })
+}
+
+/// Texts: an iterable of them, or one with commas between them.
+pub fn words(argument: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    if value.is_instance_of::<PyString>() {
+        return Ok(value.extract::<String>()?.split(',').map(|word| word.trim().to_owned()).collect());
+    }
+    let items = value.try_iter();
+    let items = items.map_err(|_| raise::kind(argument, format_args!("expected texts, found {}", shown(value))))?;
+    items.enumerate().map(|(index, item)| word(&format!("{argument}[{index}]"), &item?).map(str::to_owned)).collect()
 }
 
 /// A hash that is the same for equal texts.

@@ -2,9 +2,13 @@
 
 use atm::{
     core::{Beam, Bounds, MinAngle, RangeResolution, TransversalMedian},
-    log::{csv::EmptyCell, format::Format},
+    job::{FuseJob, LogJob, MAX_GAP, McapWishes},
+    log::{
+        csv::EmptyCell,
+        format::Format,
+        mcap::{ClockChoice, write::SchemaKind},
+    },
     pipeline::{self, Defaults, SensorModel, Settings},
-    rig::Rig,
     summary::{Dropped, Summary},
     units::{self, UnitError},
 };
@@ -13,8 +17,7 @@ use pyo3::{exceptions::PyValueError, prelude::*, types::PyString};
 use crate::{
     argument::{self, named},
     fuse::{warn, warn_of_near},
-    job::{Files, Job},
-    options, raise,
+    job, options, raise,
     rig::rig as rig_of,
 };
 
@@ -58,7 +61,7 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// input : str or os.PathLike
 ///     The log; "-" is standard input.
 /// rig : Rig or str or os.PathLike
-///     The sensors: a :class:`Rig`, a built-in rig's name, or a TOML file. A text table needs one.
+///     The sensors: a :class:`Rig`, a built-in rig's name, or a TOML file. A text table needs one; a recording says it itself.
 /// poses : str or os.PathLike, optional
 ///     A trajectory in a second file, CSV ``t,x,y,yaw`` or TUM. None: the log's own poses.
 /// output : str or os.PathLike, optional
@@ -83,6 +86,21 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// progress : callable, optional
 ///     Called now and then with the bytes read and the file's length (None where that is not known), and once at the end. What it
 ///     raises ends the run.
+/// schema : {"foxglove", "ros2"}
+///     The messages of a recording that is written.
+/// passthrough : bool
+///     Whether all that the recording holds is copied into the recording that is written.
+/// range_topics : iterable of str or str, optional
+///     Recordings: topics of readings, also as one text with commas. None: all of sensor_msgs/Range.
+/// pose_topic, fixed_frame : str, optional
+///     Recordings: where the poses come from and in which frame they are. None: transforms, else odometry, else poses; the frame odom,
+///     else the topmost.
+/// clock : {"header", "log", "publish"}, optional
+///     Recordings: which time of a message counts. None: the stamp in its header.
+/// reorder : float or str, optional
+///     Recordings: how much later than others a message may come and still be put in order. None: 2 s.
+/// max_message : int, optional
+///     Recordings: longest message that is read, in bytes. None: 64 MiB.
 /// history, max_age, max_travel, min_step, min_angle, range_resolution, emit, on_none, on_two, keep, drop_held
 ///     As in :func:`fuse`.
 ///
@@ -121,7 +139,9 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 #[pyo3(signature = (input, *, rig=None, poses=None, output=None, summary=None, crossings=None, max_gap=None, history=10,
                     max_age=None, max_travel=None, min_step=None, empty=None, min_angle=None, improvement=None, at=None,
                     range_resolution=None, fov=None, emit="settled", on_none="center", on_two="drop", keep=None,
-                    drop_held=false, strict=false, from_=None, to=None, progress=None))]
+                    drop_held=false, strict=false, from_=None, to=None, schema="foxglove", passthrough=false,
+                    range_topics=None, pose_topic=None, fixed_frame=None,
+                    clock=None, reorder=None, max_message=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse_file<'py>(
     py: Python<'py>,
@@ -150,6 +170,14 @@ pub fn fuse_file<'py>(
     #[pyo3(from_py_with = named::strict)] strict: bool,
     #[pyo3(from_py_with = named::from_)] from_: Option<&str>,
     #[pyo3(from_py_with = named::to)] to: Option<&str>,
+    #[pyo3(from_py_with = named::schema)] schema: &str,
+    #[pyo3(from_py_with = named::passthrough)] passthrough: bool,
+    range_topics: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = named::pose_topic)] pose_topic: Option<&str>,
+    #[pyo3(from_py_with = named::fixed_frame)] fixed_frame: Option<&str>,
+    #[pyo3(from_py_with = named::clock)] clock: Option<&str>,
+    reorder: Option<&Bound<'py, PyAny>>,
+    max_message: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if let Some(progress) = progress.filter(|progress| !progress.is_callable()) {
@@ -157,17 +185,6 @@ pub fn fuse_file<'py>(
     }
     let path = |name, value: Option<&Bound<'_, PyAny>>| value.map(|value| argument::path(name, value)).transpose();
     let formats = [("csv", Format::Csv), ("mcap", Format::Mcap)];
-    let to = to.map(|word| argument::choice("to", word, &formats)).transpose()?;
-    let files = Files {
-        input: argument::path("input", input)?,
-        poses: path("poses", poses)?,
-        rig: rig.and_then(|rig| argument::path("rig", rig).ok()),
-        output: path("output", output)?,
-        crossings: path("crossings", crossings)?,
-        summary: path("summary", summary)?,
-    };
-    files.check(to)?;
-    let rig = rig.map(rig_of).transpose()?.ok_or_else(no_rig)?;
     let length = |name, value| quantity(name, value, units::length);
     let beam = quantity("fov", fov, units::angle)?.map(Beam::new).transpose();
     let step = length("range_resolution", range_resolution)?.map(RangeResolution::new).transpose();
@@ -175,7 +192,44 @@ pub fn fuse_file<'py>(
         field_of_view: beam.map_err(|error| raise::value("fov", error))?,
         range_resolution: step.map_err(|error| raise::value("range_resolution", error))?,
     };
-    let sensors = options::models(&rig, &defaults)?;
+    let empties = [("no-echo", EmptyCell::NoEcho), ("skip", EmptyCell::Skip)];
+    let schemas = [("foxglove", SchemaKind::Foxglove), ("ros2", SchemaKind::Ros2)];
+    let clocks = [("header", ClockChoice::Header), ("log", ClockChoice::Log), ("publish", ClockChoice::Publish)];
+    let job = FuseJob {
+        log: LogJob {
+            input: argument::path("input", input)?,
+            from: from_.map(|word| argument::choice("from_", word, &formats)).transpose()?,
+            rig: rig.map(rig_of).transpose()?,
+            poses: path("poses", poses)?,
+            max_gap: duration("max_gap", max_gap)?.unwrap_or(MAX_GAP),
+            empty: empty.map(|word| argument::choice("empty", word, &empties)).transpose()?,
+            defaults,
+            mcap: McapWishes {
+                range_topics: range_topics
+                    .map(|topics| argument::words("range_topics", topics))
+                    .transpose()?
+                    .unwrap_or_default(),
+                pose_topic: pose_topic.map(str::to_owned),
+                fixed_frame: fixed_frame.map(str::to_owned),
+                clock: clock.map(|word| argument::choice("clock", word, &clocks)).transpose()?,
+                reorder: duration("reorder", reorder)?,
+                max_message: max_message
+                    .map(|bytes| argument::whole("max_message", bytes))
+                    .transpose()?
+                    .map(|bytes| bytes as u64),
+            },
+        },
+        rig_file: rig.and_then(|rig| argument::path("rig", rig).ok()),
+        output: path("output", output)?,
+        to: to.map(|word| argument::choice("to", word, &formats)).transpose()?,
+        crossings: path("crossings", crossings)?,
+        summary: path("summary", summary)?,
+        keep: options::keep(keep)?,
+        schema: argument::choice("schema", schema, &schemas)?,
+        passthrough,
+    };
+    job.check().map_err(|error| raise::library(&error))?;
+    let sensors = job.log.models().map_err(|error| raise::library(&error))?;
     let chosen = Angle {
         min_angle: quantity("min_angle", min_angle, units::angle)?,
         improvement: positive("improvement", improvement)?,
@@ -201,30 +255,9 @@ pub fn fuse_file<'py>(
         },
         strict,
     };
-    let empties = [("no-echo", EmptyCell::NoEcho), ("skip", EmptyCell::Skip)];
-    let job = Job {
-        files,
-        rig,
-        sensors,
-        settings,
-        max_gap: duration("max_gap", max_gap)?.unwrap_or(MAX_GAP),
-        empty: empty.map(|word| argument::choice("empty", word, &empties)).transpose()?,
-        keep: options::keep(keep)?,
-        from: from_.map(|word| argument::choice("from_", word, &formats)).transpose()?,
-        progress: progress.map(|progress| progress.clone().unbind()),
-    };
-    let summary = py.detach(|| job.run())?;
-    told(py, &job.rig, &defaults, &summary)
-}
-
-/// 0.5 s, in nanoseconds.
-const MAX_GAP: u64 = 500_000_000;
-
-fn no_rig() -> PyErr {
-    PyValueError::new_err(format!(
-        "a table does not say which sensors made it: name the rig with rig=, a built-in one ({}) or a TOML file",
-        Rig::BUILTIN.join(", ")
-    ))
+    let progress = progress.map(|progress| progress.clone().unbind());
+    let summary = job::run(py, &job, &settings, progress.as_ref())?;
+    told(py, job.log.guesses_resolution(), &summary)
 }
 
 /// How the smallest crossing angle is chosen.
@@ -251,18 +284,19 @@ impl Angle {
 /// Each cause of unusable records, with its count and where it first happened.
 fn unusable(dropped: &Dropped) -> Option<String> {
     let causes = dropped.iter().map(|(reason, count, first)| {
-        format!("\n  {count} {}, first at {} (byte {}): {}", reason.key(), first.place, first.place.byte, first.value)
+        let byte = if first.place.line > 0 { format!(" (byte {})", first.place.byte) } else { String::new() };
+        format!("\n  {count} {}, first at {}{byte}: {}", reason.key(), first.place, first.value)
     });
     let causes: String = causes.collect();
     (!causes.is_empty()).then(|| format!("unusable  {} records{causes}", dropped.total()))
 }
 
 /// The counts as a dict; what deserves a word is warned of.
-fn told<'py>(py: Python<'py>, rig: &Rig, defaults: &Defaults, summary: &Summary) -> PyResult<Bound<'py, PyAny>> {
+fn told<'py>(py: Python<'py>, guessed: bool, summary: &Summary) -> PyResult<Bound<'py, PyAny>> {
     if let Some(unusable) = unusable(&summary.dropped) {
         warn(py, &unusable)?;
     }
-    if defaults.guesses_resolution(rig) {
+    if guessed {
         warn_of_near(py, summary)?;
     }
     let text = serde_json::to_string(summary).map_err(|error| PyValueError::new_err(error.to_string()))?;

@@ -1,4 +1,7 @@
-use atm::core::{Bounds, DomainError, Kind, MinAngle, OnNone, OnTwo, RangeResolution, Travel};
+use atm::{
+    core::{Bounds, DomainError, Kind, MinAngle, OnNone, OnTwo, RangeResolution, Travel},
+    log::mcap::write::SchemaKind,
+};
 use clap::{Args, ValueEnum};
 
 use super::{
@@ -8,6 +11,7 @@ use super::{
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
+Recordings (MCAP) of ROS 2, ROS 1 and Foxglove need no more. \
 Long tables have the columns t,sensor,range,x,y,yaw, wide ones t,x,y,yaw and one for each sensor; rigs may describe others. \
 Out comes t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance. For driving, --keep median,single: \
 a reading without crossings falls back to the centre of its cone, and shuts openings as the cone does.")]
@@ -23,6 +27,12 @@ pub struct Fuse {
     /// Format of the output, instead of what its name says
     #[arg(long, value_enum)]
     pub to: Option<Format>,
+    /// The messages of a recording that is written
+    #[arg(long, value_enum, default_value = "foxglove")]
+    pub schema: Schema,
+    /// Copy all that the recording holds into the recording that is written
+    #[arg(long)]
+    pub passthrough: bool,
     #[command(flatten)]
     pub log: LogArgs,
     /// H: the local map holds the last H readings of every sensor
@@ -64,7 +74,7 @@ pub struct Fuse {
     /// Write only these kinds of echoes [default: all]
     #[arg(long, value_name = "KIND", value_delimiter = ',', value_parser = kind)]
     pub keep: Vec<Kind>,
-    /// Also write every transversal crossing, as CSV
+    /// Also write every transversal crossing, as CSV, or as a recording where the name ends in .mcap
     #[arg(long, value_name = "FILE")]
     pub crossings: Option<String>,
     /// Stop at the first unusable record
@@ -76,6 +86,23 @@ pub struct Fuse {
     /// Write the counts as JSON
     #[arg(long, value_name = "FILE")]
     pub summary: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Schema {
+    /// Foxglove's, in protobuf: for Foxglove, Lichtblick and Rerun
+    Foxglove,
+    /// ROS 2's: for RViz, and to be played back, as well
+    Ros2,
+}
+
+impl From<Schema> for SchemaKind {
+    fn from(schema: Schema) -> Self {
+        match schema {
+            Schema::Foxglove => Self::Foxglove,
+            Schema::Ros2 => Self::Ros2,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

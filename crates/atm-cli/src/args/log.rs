@@ -1,16 +1,25 @@
 //! How a log is to be read: what several commands take.
 
-use atm::core::Beam;
+use std::sync::Arc;
+
+use atm::{
+    core::{Beam, RangeResolution},
+    error::Result,
+    intake::Defaults,
+    job::{LogJob, McapWishes},
+    log::{csv::EmptyCell, format, mcap::ClockChoice},
+    rig::Rig,
+};
 use clap::{Args, ValueEnum};
 
-use super::values::{beam, duration};
+use super::values::{beam, bytes, duration};
 
 /// A format of files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// A text table.
     Csv,
-    /// A ROS or Foxglove recording (not supported yet).
+    /// A ROS or Foxglove recording.
     Mcap,
 }
 
@@ -32,6 +41,90 @@ pub struct LogArgs {
     /// Full beam of sensors of which neither rig nor log says it
     #[arg(long, value_name = "A", default_value = "22.5deg", value_parser = beam)]
     pub fov: Beam<f64>,
+    /// Recordings: topics of readings [default: all of sensor_msgs/Range]
+    #[arg(long, value_name = "TOPIC", value_delimiter = ',')]
+    pub range_topics: Vec<String>,
+    /// Recordings: topic of the poses [default: transforms, else odometry, else poses]
+    #[arg(long, value_name = "TOPIC")]
+    pub pose_topic: Option<String>,
+    /// Recordings: frame of the poses [default: odom, else the topmost]
+    #[arg(long, value_name = "FRAME")]
+    pub fixed_frame: Option<String>,
+    /// Recordings: which time of a message counts [default: header]
+    #[arg(long, value_enum)]
+    pub clock: Option<Clock>,
+    /// Recordings: how much later than others a message may come and still be put in order [default: 2s]
+    #[arg(long, value_name = "T", value_parser = duration)]
+    pub reorder: Option<u64>,
+    /// Recordings: longest message that is read, in bytes or with k, M, G [default: 64M]
+    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    pub max_message: Option<u64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Clock {
+    /// The stamp in its header: when it was measured
+    Header,
+    /// When it was recorded
+    Log,
+    /// When it was sent
+    Publish,
+}
+
+impl LogArgs {
+    /// How the log is to be read. `range_resolution` is what beats the rig's.
+    pub fn job(
+        &self,
+        input: &str,
+        from: Option<Format>,
+        range_resolution: Option<RangeResolution<f64>>,
+    ) -> Result<LogJob> {
+        Ok(LogJob {
+            input: input.to_owned(),
+            from: from.map(format::Format::from),
+            rig: self.rig.as_deref().map(Rig::load).transpose()?.map(Arc::new),
+            poses: self.poses.clone(),
+            max_gap: self.max_gap,
+            empty: self.empty.map(EmptyCell::from),
+            defaults: Defaults { field_of_view: Some(self.fov), range_resolution },
+            mcap: McapWishes {
+                range_topics: self.range_topics.clone(),
+                pose_topic: self.pose_topic.clone(),
+                fixed_frame: self.fixed_frame.clone(),
+                clock: self.clock.map(ClockChoice::from),
+                reorder: self.reorder,
+                max_message: self.max_message,
+            },
+        })
+    }
+}
+
+impl From<Format> for format::Format {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Csv => Self::Csv,
+            Format::Mcap => Self::Mcap,
+        }
+    }
+}
+
+impl From<Clock> for ClockChoice {
+    fn from(clock: Clock) -> Self {
+        match clock {
+            Clock::Header => Self::Header,
+            Clock::Log => Self::Log,
+            Clock::Publish => Self::Publish,
+        }
+    }
+}
+
+impl From<Empty> for EmptyCell {
+    fn from(empty: Empty) -> Self {
+        match empty {
+            Empty::NoEcho => Self::NoEcho,
+            Empty::Skip => Self::Skip,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

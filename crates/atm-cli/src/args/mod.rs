@@ -1,5 +1,7 @@
 //! What can stand on the command line, one file a command.
 
+mod draw;
+mod eval;
 mod fuse;
 mod info;
 mod log;
@@ -10,9 +12,11 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub use self::{
+    draw::{Draw, PanelSpec},
+    eval::Eval,
     fuse::{Emit, Fuse},
     info::Info,
-    log::{Empty, Format, LogArgs},
+    log::Format,
     plan::Plan,
     simulate::Simulate,
 };
@@ -41,4 +45,8 @@ pub enum Command {
     Info(Info),
     /// Drive a robot through a world and write its log
     Simulate(Simulate),
+    /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
+    Eval(Eval),
+    /// Draw walls, path, arcs, crossings and echoes
+    Draw(Box<Draw>),
 }

@@ -75,6 +75,24 @@ pub fn min_angle(text: &str) -> Result<MinAngle<f64>, String> {
     MinAngle::new(units::angle(text).map_err(words)?).map_err(words)
 }
 
+/// A number of bytes, with or without a multiple of 1024.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let split = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(split);
+    let shift = match unit {
+        "" | "B" => 0,
+        "k" | "kB" | "KiB" => 10,
+        "M" | "MB" | "MiB" => 20,
+        "G" | "GB" | "GiB" => 30,
+        _ => return Err(format!("{text} has none of the units k, M, G")),
+    };
+    let number: Option<u64> = number.parse().ok();
+    match number.and_then(|number| number.checked_mul(1 << shift)) {
+        Some(bytes) if bytes > 0 => Ok(bytes),
+        _ => Err(format!("{text} is no positive number of bytes")),
+    }
+}
+
 /// `KEY=VALUE`, as it stands: what keys there are depends on the world.
 pub fn parameter(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {

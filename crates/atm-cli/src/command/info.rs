@@ -4,10 +4,13 @@ use std::{fmt::Write as _, sync::Arc};
 
 use atm::{
     core::Limits,
-    error::Result,
+    error::Error,
+    job::{LogJob, poses_of},
     log::{
-        Source,
+        Input, Source,
         csv::{CsvReadings, Discover, PoseUse, SensorNames},
+        format::Format,
+        mcap::McapReadings,
     },
     pipeline::AnyTrack,
     rig::{Rig, Sensor},
@@ -16,14 +19,18 @@ use atm::{
 };
 use serde_json::{Map, Value, json};
 
-use crate::{Failure, Outcome, args::Info, command, report};
+use crate::{Failure, Outcome, args::Info, report};
 
 /// A log with what its sensors are called.
 struct Findings {
     format: &'static str,
     ids: Vec<String>,
+    /// By the sensor's index, where a recording says it.
+    topics: Vec<Option<String>>,
     survey: Survey,
     pose_source: Option<String>,
+    /// What a recording has to say of how it was read.
+    notes: Vec<String>,
     rig: Option<Arc<Rig>>,
 }
 
@@ -32,10 +39,12 @@ const MANY_HELD: f64 = 0.2;
 
 /// Runs the command.
 pub fn run(args: &Info) -> Result<Outcome, Failure> {
-    let rig = command::rig(&args.log)?;
-    let findings = match &rig {
-        Some(rig) => find(args, Some(rig), Arc::clone(rig))?,
-        None => find(args, None, Discover::default())?,
+    let job = args.log.job(&args.input, args.from, None)?;
+    let (format, input) = job.open()?;
+    let findings = match &job.rig {
+        _ if format == Format::Mcap => find_mcap(&job, input)?,
+        Some(rig) => find(&job, input, Arc::clone(rig))?,
+        None => find(&job, input, Discover::default())?,
     };
     let problems = problems(&findings);
     let text = if args.json { as_json(&findings, &problems) } else { as_text(args, &findings, &problems) };
@@ -47,14 +56,14 @@ pub fn run(args: &Info) -> Result<Outcome, Failure> {
     Ok(if clean { Outcome::Done } else { Outcome::Partly })
 }
 
-fn find<N: SensorNames>(args: &Info, rig: Option<&Arc<Rig>>, names: N) -> Result<Findings, Failure> {
-    let input = command::open(&args.input, args.from)?;
-    let format = command::table_format(rig.map(Arc::as_ref));
-    let poses = command::pose_use(&args.log, PoseUse::IfThere);
-    let mut source = CsvReadings::new(input, &format, poses, command::empty_cell(&args.log), names)?;
-    let mut track = command::track(&args.log, rig.map(Arc::as_ref))?;
+fn find<N: SensorNames>(job: &LogJob, input: Input, names: N) -> Result<Findings, Error> {
+    let rig = job.rig.as_ref();
+    let format = rig.and_then(|rig| rig.log()).map(|formats| formats.readings.clone()).unwrap_or_default();
+    let poses = if job.poses.is_some() { PoseUse::Ignored } else { PoseUse::IfThere };
+    let mut source = CsvReadings::new(input, &format, poses, job.empty, names)?;
+    let mut track = job.track()?;
     let pose_source = match &track {
-        Some((_, kind)) => Some(format!("{} ({kind})", args.log.poses.as_deref().unwrap_or_default())),
+        Some((_, kind)) => Some(second_file(job, kind)),
         None => source.has_poses().then(|| "columns x, y, yaw".to_owned()),
     };
     let format = if source.is_wide() { "csv-wide" } else { "csv-long" };
@@ -64,10 +73,36 @@ fn find<N: SensorNames>(args: &Info, rig: Option<&Arc<Rig>>, names: N) -> Result
     Ok(Findings {
         format,
         ids: source.ids().iter().map(ToString::to_string).collect(),
+        topics: Vec::new(),
         survey,
         pose_source,
+        notes: Vec::new(),
         rig: rig.cloned(),
     })
+}
+
+fn find_mcap(job: &LogJob, input: Input) -> Result<Findings, Error> {
+    let track = job.track()?;
+    let second_file = track.as_ref().map(|(_, kind)| second_file(job, kind));
+    let track = track.map(|(track, _)| track);
+    let options = job.options(PoseUse::IfThere);
+    let mut source = McapReadings::open(&job.input, input, job.rig.clone(), track, options)?;
+    let survey = survey(&mut source, None, &[])?;
+    let ids: Vec<String> = source.ids().iter().map(ToString::to_string).collect();
+    let topics = (0..=u16::MAX).zip(&ids).map(|(sensor, _)| source.topic(sensor).map(str::to_owned));
+    Ok(Findings {
+        format: "mcap",
+        topics: topics.collect(),
+        ids,
+        survey,
+        pose_source: second_file.or_else(|| poses_of(&source)),
+        notes: source.notes(),
+        rig: job.rig.clone(),
+    })
+}
+
+fn second_file(job: &LogJob, kind: &str) -> String {
+    format!("{} ({kind})", job.poses.as_deref().unwrap_or_default())
 }
 
 fn limits(sensor: &Sensor) -> Limits<f64> {
@@ -85,7 +120,10 @@ fn problems(findings: &Findings) -> Vec<String> {
         problems.push(format!("the clock was set back {} times", survey.clock_resets));
     }
     if findings.pose_source.is_none() {
-        problems.push("no poses: columns x, y, yaw are missing; give them with --poses".into());
+        problems.push(match findings.format {
+            "mcap" => "no poses that hang together with the sensors; give them with --poses".into(),
+            _ => "no poses: columns x, y, yaw are missing; give them with --poses".into(),
+        });
     }
     let silent: Vec<&str> = findings
         .ids
@@ -112,7 +150,8 @@ fn as_json(findings: &Findings, problems: &[String]) -> String {
     for (index, id) in findings.ids.iter().enumerate() {
         let seen = findings.survey.sensors.get(index).copied().unwrap_or_default();
         let sensor = findings.rig.as_ref().and_then(|rig| rig.sensors().get(index));
-        sensors.insert(id.clone(), sensor_json(&seen, sensor));
+        let topic = findings.topics.get(index).and_then(Option::as_deref);
+        sensors.insert(id.clone(), sensor_json(&seen, sensor, topic));
     }
     let object = json!({
         "format": findings.format,
@@ -128,17 +167,19 @@ fn as_json(findings: &Findings, problems: &[String]) -> String {
     format!("{object:#}\n")
 }
 
-fn sensor_json(seen: &SensorSurvey, sensor: Option<&Sensor>) -> Value {
+fn sensor_json(seen: &SensorSurvey, sensor: Option<&Sensor>, topic: Option<&str>) -> Value {
+    let limits = seen.sight.map(|(limits, _)| limits).or_else(|| sensor.map(limits));
+    let beam = seen.sight.map(|(_, beam)| beam.field_of_view());
     json!({
-        "topic": sensor.and_then(Sensor::topic),
+        "topic": topic.or_else(|| sensor.and_then(Sensor::topic)),
         "readings": seen.readings,
         "no_echo": seen.no_echo,
         "held": seen.held,
         "rate_hz": seen.rate(),
-        "field_of_view_rad": sensor.and_then(Sensor::field_of_view),
-        "min_range_m": sensor.map(Sensor::min_range),
+        "field_of_view_rad": beam.or_else(|| sensor.and_then(Sensor::field_of_view)),
+        "min_range_m": limits.map(|limits| limits.min()),
         // An infinite maximum has no number in JSON: null, as for an unknown one.
-        "max_range_m": sensor.map(Sensor::max_range),
+        "max_range_m": limits.map(|limits| limits.max()),
     })
 }
 
@@ -157,18 +198,39 @@ fn as_text(args: &Info, findings: &Findings, problems: &[String]) -> String {
         let _ = writeln!(text, "gap       {:.3} s at most, after {} s", gap as f64 * 1e-9, stamp::text(since));
     }
     let _ = writeln!(text, "poses     {}", findings.pose_source.as_deref().unwrap_or("none"));
+    for note in &findings.notes {
+        let _ = writeln!(text, "{note}");
+    }
     if survey.empty > 0 {
         let _ = writeln!(text, "empty     {} cells skipped", survey.empty);
     }
+    text.push_str(&table(findings));
+    for problem in problems {
+        let _ = writeln!(text, "\nproblem: {problem}");
+    }
+    text
+}
+
+/// The sensors, one a line.
+fn table(findings: &Findings) -> String {
+    let survey = &findings.survey;
+    let mut text = String::new();
+    let sights = survey.sensors.iter().any(|sensor| sensor.sight.is_some());
     let width = findings.ids.iter().map(|id| id.chars().count()).max().unwrap_or(0).max("sensor".len());
-    let _ = writeln!(text, "\n{:width$}  readings  no echo     held  rate", "sensor");
+    let more = if sights { "           beam      min      max  topic" } else { "" };
+    let _ = writeln!(text, "\n{:width$}  readings  no echo     held  rate{more}", "sensor");
     for (index, id) in findings.ids.iter().enumerate() {
         let seen = survey.sensors.get(index).copied().unwrap_or_default();
         let rate = seen.rate().map_or_else(|| "-".to_owned(), |rate| format!("{rate:.2} Hz"));
-        let _ = writeln!(text, "{id:width$}  {:8}  {:7}  {:7}  {rate}", seen.readings, seen.no_echo, seen.held);
-    }
-    for problem in problems {
-        let _ = writeln!(text, "\nproblem: {problem}");
+        let _ = write!(text, "{id:width$}  {:8}  {:7}  {:7}  ", seen.readings, seen.no_echo, seen.held);
+        let _ = match seen.sight {
+            None => writeln!(text, "{rate}"),
+            Some((limits, beam)) => {
+                let (beam, min, max) = (beam.field_of_view().to_degrees(), limits.min(), limits.max());
+                let topic = findings.topics.get(index).and_then(Option::as_deref).unwrap_or_default();
+                writeln!(text, "{rate:10}  {beam:5.1}deg  {min:5.2} m  {max:5.2} m  {topic}")
+            }
+        };
     }
     text
 }

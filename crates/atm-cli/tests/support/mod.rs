@@ -1,6 +1,8 @@
 //! Runs the command as a user does, and reads what it wrote.
 #![allow(dead_code)] // every test file uses its own part
 
+pub mod recording;
+
 use std::{
     ffi::OsStr,
     fs,

@@ -239,6 +239,14 @@ def fuse_file(
     strict: bool = False,
     from_: _Format | None = None,
     to: _Format | None = None,
+    schema: Literal["foxglove", "ros2"] = "foxglove",
+    passthrough: bool = False,
+    range_topics: Iterable[str] | str | None = None,
+    pose_topic: str | None = None,
+    fixed_frame: str | None = None,
+    clock: Literal["header", "log", "publish"] | None = None,
+    reorder: float | str | None = None,
+    max_message: int | None = None,
     progress: Callable[[int, int | None], object] | None = None,
 ) -> dict[str, Any]: ...
 def plan(

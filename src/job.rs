@@ -1,0 +1,354 @@
+//! One run: a log of any format in, files out. What the command does, and what Python does.
+mod outputs;
+mod watched;
+
+use std::{
+    io::{self, Write as _},
+    sync::Arc,
+};
+
+use atm_core::Kind;
+
+use self::{outputs::Outputs, watched::Watched};
+use crate::{
+    error::{Error, Result},
+    intake::{Defaults, SensorModel},
+    log::{
+        Input, Source,
+        csv::{CsvReadings, EmptyCell, PoseUse},
+        format::{Format, MCAP_MAGIC},
+        mcap::{
+            ClockChoice, McapReadings, Options,
+            write::{Contents, SchemaKind},
+        },
+        output::{Output, overwrites, same_file},
+        poses::PoseLog,
+    },
+    pipeline::{self, AnyTrack, Settings},
+    rig::Rig,
+    summary::Summary,
+    track::Track,
+};
+
+/// 0.5 s, in nanoseconds.
+pub const MAX_GAP: u64 = 500_000_000;
+
+/// What is said of how to read recordings; `None` and empty where nothing is.
+#[derive(Debug, Clone, Default)]
+pub struct McapWishes {
+    /// Topics of readings.
+    pub range_topics: Vec<String>,
+    /// The topic of the poses.
+    pub pose_topic: Option<String>,
+    /// The frame of the poses.
+    pub fixed_frame: Option<String>,
+    /// Which time of a message counts.
+    pub clock: Option<ClockChoice>,
+    /// How much later than others a message may be recorded and still be put in order, in nanoseconds.
+    pub reorder: Option<u64>,
+    /// Longest message that is read, in bytes.
+    pub max_message: Option<u64>,
+}
+
+impl McapWishes {
+    /// The first wish that was made, as the command line calls it.
+    fn first(&self) -> Option<&'static str> {
+        let made = [
+            (!self.range_topics.is_empty(), "--range-topics"),
+            (self.pose_topic.is_some(), "--pose-topic"),
+            (self.fixed_frame.is_some(), "--fixed-frame"),
+            (self.clock.is_some(), "--clock"),
+            (self.reorder.is_some(), "--reorder"),
+            (self.max_message.is_some(), "--max-message"),
+        ];
+        made.into_iter().find(|(made, _)| *made).map(|(_, name)| name)
+    }
+}
+
+/// How a log is read.
+#[derive(Debug, Clone)]
+pub struct LogJob {
+    /// The log: a path, or `-` for standard input.
+    pub input: String,
+    /// Its format, instead of what its content says.
+    pub from: Option<Format>,
+    /// The sensors, where somebody says them.
+    pub rig: Option<Arc<Rig>>,
+    /// A trajectory in a second file.
+    pub poses: Option<String>,
+    /// A reading without a pose within this on both sides, in nanoseconds, has none.
+    pub max_gap: u64,
+    /// What an empty cell of a table is.
+    pub empty: Option<EmptyCell>,
+    /// What holds where neither rig nor log says more.
+    pub defaults: Defaults,
+    /// How a recording is read.
+    pub mcap: McapWishes,
+}
+
+/// A log that was opened.
+pub enum OpenLog {
+    /// A table.
+    Csv(Box<CsvReadings<Arc<Rig>>>, Option<AnyTrack>),
+    /// A recording.
+    Mcap(Box<McapReadings>),
+}
+
+impl OpenLog {
+    fn recording(&self) -> Option<&McapReadings> {
+        match self {
+            Self::Csv(..) => None,
+            Self::Mcap(log) => Some(log),
+        }
+    }
+
+    /// The log itself, and the second file's poses where it does not see to those.
+    pub fn source(&mut self) -> (&mut dyn Source, Option<&mut AnyTrack>) {
+        match self {
+            Self::Csv(log, track) => (&mut **log, track.as_mut()),
+            Self::Mcap(log) => (&mut **log, None),
+        }
+    }
+}
+
+impl LogJob {
+    /// The rig's sensors, completed; none without a rig, where a recording says itself what it saw.
+    ///
+    /// # Errors
+    /// As [`Defaults::complete`].
+    pub fn sensors(&self) -> Result<Vec<SensorModel>> {
+        self.rig.as_deref().map_or_else(|| Ok(Vec::new()), |rig| self.defaults.complete(rig))
+    }
+
+    /// Opens the log itself, and says what it is.
+    ///
+    /// # Errors
+    /// It can't be read.
+    pub fn open(&self) -> Result<(Format, Input)> {
+        let (found, input) = Input::open(&self.input)?.sniff()?;
+        // What was cut off before it could say what it is goes by its name.
+        let is_cut = input.length.is_some_and(|length| length < MCAP_MAGIC.len() as u64);
+        let found = if is_cut && Format::of_name(&self.input) == Format::Mcap { Format::Mcap } else { found };
+        let format = self.from.unwrap_or(found);
+        if format != Format::Csv {
+            return Ok((Format::Mcap, input));
+        }
+        match self.mcap.first() {
+            Some(name) => Err(Error::Settings { message: format!("{name}: {} is a table, no recording", input.name) }),
+            None => Ok((format, input)),
+        }
+    }
+
+    /// How a recording is read.
+    pub fn options(&self, poses: PoseUse) -> Options {
+        let (wishes, default) = (self.mcap.clone(), Options::default());
+        Options {
+            range_topics: wishes.range_topics,
+            pose_topic: wishes.pose_topic,
+            fixed_frame: wishes.fixed_frame,
+            clock: wishes.clock.unwrap_or(default.clock),
+            reorder: wishes.reorder.unwrap_or(default.reorder),
+            max_message: wishes.max_message.unwrap_or(default.max_message),
+            max_gap: self.max_gap,
+            poses,
+            everything: false,
+            defaults: self.defaults,
+        }
+    }
+
+    /// The second file's poses and what kind of file it is, where there is one.
+    ///
+    /// # Errors
+    /// It can't be read, or is no trajectory.
+    pub fn track(&self) -> Result<Option<(AnyTrack, &'static str)>> {
+        let Some(path) = &self.poses else { return Ok(None) };
+        let format = self.rig.as_deref().and_then(Rig::log).map(|formats| &formats.poses);
+        let log = PoseLog::new(Input::open(path)?, format)?;
+        let kind = if log.is_tum() { "TUM" } else { "CSV" };
+        Ok(Some((Track::new(Box::new(log), self.max_gap), kind)))
+    }
+
+    /// Whether the range resolution of some sensor is a guess.
+    pub fn guesses_resolution(&self) -> bool {
+        match &self.rig {
+            Some(rig) => self.defaults.guesses_resolution(rig),
+            None => self.defaults.range_resolution.is_none(),
+        }
+    }
+
+    /// The rig's sensors, completed; without a rig one that stands for all.
+    ///
+    /// # Errors
+    /// As [`Defaults::complete`].
+    pub fn models(&self) -> Result<Vec<SensorModel>> {
+        match &self.rig {
+            Some(rig) => self.defaults.complete(rig),
+            None => self.defaults.complete(&Rig::ring(1, 0.0, 0.0, crate::rig::Ranging::default())?),
+        }
+    }
+
+    /// The log that was opened, with the sensors and poses it needs. `everything`: what a recording holds besides is wanted, too.
+    ///
+    /// # Errors
+    /// It can't be read, is none, lacks columns or poses; a table without a rig.
+    pub fn readings(&self, format: Format, input: Input, everything: bool) -> Result<OpenLog> {
+        let track = self.track()?.map(|(track, _)| track);
+        if format != Format::Csv {
+            let options = Options { everything, ..self.options(PoseUse::Needed) };
+            let log = McapReadings::open(&self.input, input, self.rig.clone(), track, options)?;
+            return Ok(OpenLog::Mcap(Box::new(log)));
+        }
+        if everything {
+            let message = format!("--passthrough: {} is a table, no recording that could be copied", input.name);
+            return Err(Error::Settings { message });
+        }
+        let rig = self.rig.as_ref().ok_or_else(no_rig)?;
+        let poses = if track.is_some() { PoseUse::Ignored } else { PoseUse::Needed };
+        let format = rig.log().map(|formats| formats.readings.clone()).unwrap_or_default();
+        let log = CsvReadings::new(input, &format, poses, self.empty, Arc::clone(rig))?;
+        Ok(OpenLog::Csv(Box::new(log), track))
+    }
+}
+
+fn no_rig() -> Error {
+    let built_in = Rig::BUILTIN.join(", ");
+    let message = format!(
+        "a table does not say which sensors made it: name the rig with --rig (in Python rig=), a built-in one \
+         ({built_in}) or a TOML file"
+    );
+    Error::Settings { message }
+}
+
+/// A run that fuses.
+#[derive(Debug, Clone)]
+pub struct FuseJob {
+    /// The log.
+    pub log: LogJob,
+    /// The rig's file, so that no output overwrites it.
+    pub rig_file: Option<String>,
+    /// Where the echoes go; `-` is standard output, and without one they are only counted.
+    pub output: Option<String>,
+    /// Its format, instead of what its name says.
+    pub to: Option<Format>,
+    /// Where the crossings go.
+    pub crossings: Option<String>,
+    /// Where the counts go, as JSON.
+    pub summary: Option<String>,
+    /// Kinds of echoes to write, where not all are.
+    pub keep: Option<Vec<Kind>>,
+    /// The messages of a recording that is written.
+    pub schema: SchemaKind,
+    /// Whether the log, a recording, is copied into the output, another one.
+    pub passthrough: bool,
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// What was counted, whatever came of the run.
+    pub summary: Summary,
+    /// Where a recording's poses came from.
+    pub pose_source: Option<String>,
+    /// What a person should know of how the log was read.
+    pub notes: Vec<String>,
+    /// Why it did not end well.
+    pub result: Result<()>,
+    /// The files that hold what a run that did not end well had written.
+    pub partials: Vec<String>,
+}
+
+/// Where a recording's poses come from, in words, and where else they could.
+pub fn poses_of(log: &McapReadings) -> Option<String> {
+    let others = log.other_poses();
+    let others = match others.len() {
+        0 => String::new(),
+        _ => format!(" (not used: {}; --pose-topic chooses)", others.join(", ")),
+    };
+    Some(log.pose_source()? + &others)
+}
+
+/// Is told bytes read and the log's length, now and then and at the end; `false` ends the run.
+pub type Progress<'a> = dyn FnMut(u64, Option<u64>) -> bool + 'a;
+
+impl FuseJob {
+    /// Refuses outputs that would destroy an input or one another, and inputs that can't be had.
+    ///
+    /// # Errors
+    /// [`Error::Settings`].
+    pub fn check(&self) -> Result<()> {
+        let refuse = |message: String| Err(Error::Settings { message });
+        let outputs: Vec<&String> = [&self.output, &self.crossings, &self.summary].into_iter().flatten().collect();
+        let inputs = [Some(&self.log.input), self.log.poses.as_ref(), self.rig_file.as_ref()];
+        for (index, output) in outputs.iter().enumerate() {
+            if let Some(input) = inputs.into_iter().flatten().find(|input| overwrites(output, input)) {
+                return refuse(format!("{output}: writing it would overwrite the input {input}"));
+            }
+            if outputs.iter().take(index).any(|other| other == output || same_file(other, output)) {
+                return refuse(format!("{output} is named for two outputs"));
+            }
+        }
+        if self.log.poses.as_deref() == Some("-") && self.log.input == "-" {
+            return refuse("standard input can't be both the log and the poses".into());
+        }
+        if self.passthrough && (self.output.is_none() || self.format() != Format::Mcap) {
+            let output = self.output.as_deref().unwrap_or("no output");
+            return refuse(format!("--passthrough: {output} is no recording that the log could be copied into"));
+        }
+        Ok(())
+    }
+
+    /// What the output is.
+    fn format(&self) -> Format {
+        self.to.unwrap_or_else(|| self.output.as_deref().map_or(Format::Csv, Format::of_name))
+    }
+
+    /// Whether the log is copied into the output of these contents.
+    fn passes(&self, contents: Contents) -> bool {
+        self.passthrough && contents == Contents::Everything
+    }
+
+    /// Runs it, as `settings` say.
+    ///
+    /// # Errors
+    /// What keeps it from beginning; what ends it later is in [`Ended::result`].
+    pub fn run(&self, settings: &Settings, progress: &mut Progress<'_>) -> Result<Ended> {
+        self.check()?;
+        let (format, input) = self.log.open()?;
+        let length = input.length;
+        let mut log = self.log.readings(format, input, self.passthrough)?;
+        let sensors = self.log.sensors()?;
+        let input = outputs::Input {
+            ids: self.log.rig.as_deref().map(Rig::ids).unwrap_or_default(),
+            mounts: sensors.iter().map(|sensor| sensor.mount).collect(),
+            recording: log.recording(),
+        };
+        let mut outputs = Outputs::create(self, settings, &input)?;
+        if let (OpenLog::Mcap(log), true, Some(tap)) = (&mut log, self.passthrough, outputs.tap()) {
+            log.set_tap(tap);
+        }
+        let counts = self.summary.as_deref().map(Output::create).transpose()?;
+        let (source, track) = log.source();
+        let mut watched = Watched::new(source, length, progress);
+        let fused = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
+        let (summary, result) = fused;
+        let result = result.and_then(|()| watched.finish());
+        let (pose_source, mut notes) = match &log {
+            OpenLog::Csv(..) => (None, Vec::new()),
+            OpenLog::Mcap(log) => (poses_of(log), log.notes()),
+        };
+        notes.extend(outputs.late());
+        let partials = outputs.partials();
+        let result = result.and_then(|()| outputs.commit());
+        let partials = if result.is_err() { partials } else { Vec::new() };
+        // Whatever came of the run: what was counted is true.
+        let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
+        Ok(Ended { summary, pose_source, notes, result: result.and(counted), partials })
+    }
+}
+
+fn write_counts(mut output: Output, summary: &Summary) -> Result<()> {
+    let failed = |error: serde_json::Error| output.error(io::Error::other(error));
+    let text = serde_json::to_string_pretty(summary).map_err(failed)?;
+    writeln!(output, "{text}").map_err(|error| output.error(error))?;
+    output.commit()
+}

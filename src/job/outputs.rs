@@ -1,0 +1,205 @@
+//! The files that a run writes: tables, recordings, or one of each.
+
+use std::sync::Arc;
+
+use atm_core::{ArcCrossing, Echo, Isometry2, Kind, Reading};
+
+use super::FuseJob;
+use crate::{
+    error::{Error, Result},
+    log::{
+        Row,
+        echoes::TableWriter,
+        format::Format,
+        mcap::{
+            McapReadings, Tap,
+            write::{Contents, Layout, McapSink, Options, Passing},
+        },
+        output::Output,
+    },
+    pipeline::{EchoSink, Emit, Settings},
+    track::Pose,
+};
+
+/// One output.
+enum Written {
+    Table(TableWriter<Output>),
+    Recording(Box<McapSink<Output>>),
+}
+
+impl Written {
+    fn flush(&mut self) -> Result<()> {
+        match self {
+            Self::Table(table) => {
+                let flushed = table.flush();
+                name(table, flushed)
+            }
+            Self::Recording(recording) => recording.flush(),
+        }
+    }
+
+    /// Puts the file under its name.
+    fn commit(self) -> Result<()> {
+        match self {
+            Self::Table(table) => table.into_inner().commit(),
+            Self::Recording(recording) => recording.finish()?.commit(),
+        }
+    }
+}
+
+/// Names the table's file in what the system says of it.
+fn name<T>(table: &TableWriter<Output>, result: std::io::Result<T>) -> Result<T> {
+    result.map_err(|error| table.get_ref().error(error))
+}
+
+/// What the outputs need to know of the log.
+pub(super) struct Input<'a> {
+    /// The sensors that are known beforehand, and where they sit.
+    pub(super) ids: &'a [Arc<str>],
+    pub(super) mounts: Vec<Isometry2<f64>>,
+    /// The log, where it is a recording.
+    pub(super) recording: Option<&'a McapReadings>,
+}
+
+/// The files, those that were asked for.
+pub(super) struct Outputs {
+    echoes: Option<Written>,
+    crossings: Option<Written>,
+    /// Kinds to write, where not all are.
+    keep: Option<Vec<Kind>>,
+    partials: Vec<String>,
+}
+
+impl Outputs {
+    pub(super) fn create(job: &FuseJob, settings: &Settings, input: &Input<'_>) -> Result<Self> {
+        let mut partials = Vec::new();
+        let mut create = |path: &str, format, contents| {
+            let output = Output::create(path)?;
+            partials.extend(output.partial_path().map(|path| path.display().to_string()));
+            let file = Arc::clone(output.name());
+            if format == Format::Mcap {
+                let options = Options {
+                    kind: job.schema,
+                    layout: layout(settings.emit, &output),
+                    contents,
+                    mounts: input.mounts.clone(),
+                    history: settings.history,
+                    passing: input.recording.filter(|_| job.passes(contents)).map(|recording| Passing {
+                        profile: recording.profile().to_owned(),
+                        window: recording.window(),
+                    }),
+                    ..Options::default()
+                };
+                return McapSink::create(output, file, options).map(|sink| Written::Recording(Box::new(sink)));
+            }
+            let ids = input.ids.iter().map(|id| &**id);
+            let table = match contents {
+                Contents::Everything => TableWriter::echoes(output, ids),
+                Contents::Crossings => TableWriter::crossings(output, ids),
+            };
+            table.map(Written::Table).map_err(|source| Error::Io { file, source })
+        };
+        let echoes = job.output.as_deref().map(|path| create(path, job.format(), Contents::Everything));
+        let echoes = echoes.transpose()?;
+        let crossings = job.crossings.as_deref().map(|path| create(path, Format::of_name(path), Contents::Crossings));
+        Ok(Self { crossings: crossings.transpose()?, echoes, keep: job.keep.clone(), partials })
+    }
+
+    /// Takes in what the log holds besides, where that is to be copied.
+    pub(super) fn tap(&self) -> Option<Box<dyn Tap>> {
+        match &self.echoes {
+            Some(Written::Recording(recording)) => Some(Box::new(recording.pass_through())),
+            _ => None,
+        }
+    }
+
+    /// What was copied out of order, in words.
+    pub(super) fn late(&self) -> Option<String> {
+        let late = match &self.echoes {
+            Some(Written::Recording(recording)) => recording.late(),
+            _ => 0,
+        };
+        (late > 0).then(|| {
+            format!("copied    {late} messages of the log came later than --reorder allows: they stand out of order")
+        })
+    }
+
+    /// The files that hold what was written until [`Outputs::commit`].
+    pub(super) fn partials(&self) -> Vec<String> {
+        self.partials.clone()
+    }
+
+    /// Puts the files under their names.
+    pub(super) fn commit(self) -> Result<()> {
+        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::commit)
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut Written> {
+        self.echoes.iter_mut().chain(&mut self.crossings)
+    }
+
+    fn recordings(&mut self) -> impl Iterator<Item = &mut McapSink<Output>> {
+        self.all().filter_map(|written| match written {
+            Written::Recording(recording) => Some(&mut **recording),
+            Written::Table(_) => None,
+        })
+    }
+}
+
+/// A live robot's echoes go down a pipe as they come; a file is read when it is whole.
+fn layout(emit: Emit, output: &Output) -> Layout {
+    if emit == Emit::Latest && output.partial_path().is_none() { Layout::Immediate } else { Layout::Chunked }
+}
+
+impl EchoSink for Outputs {
+    fn sensors(&mut self, ids: &[Arc<str>]) -> Result<()> {
+        self.all().try_for_each(|written| match written {
+            Written::Table(table) => {
+                table.set_ids(ids.iter().map(|id| &**id));
+                Ok(())
+            }
+            Written::Recording(recording) => recording.sensors(ids),
+        })
+    }
+
+    fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        self.recordings().try_for_each(|recording| recording.record(row, pose))
+    }
+
+    fn reading(&mut self, reading: &Reading<f64>) -> Result<()> {
+        self.recordings().try_for_each(|recording| recording.reading(reading))
+    }
+
+    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
+        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
+            return Ok(false);
+        }
+        match &mut self.echoes {
+            None => Ok(false),
+            Some(Written::Table(table)) => {
+                let written = table.echo(echo);
+                name(table, written).map(|()| true)
+            }
+            Some(Written::Recording(recording)) => recording.echo(echo),
+        }
+    }
+
+    fn wants_crossings(&self) -> bool {
+        self.crossings.is_some() || matches!(self.echoes, Some(Written::Recording(_)))
+    }
+
+    fn crossings(&mut self, crossings: &[ArcCrossing<f64>]) -> Result<()> {
+        self.recordings().try_for_each(|recording| recording.crossings(crossings))?;
+        if let Some(Written::Table(table)) = &mut self.crossings {
+            for crossing in crossings {
+                let written = table.crossing(crossing);
+                name(table, written)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        self.all().try_for_each(Written::flush)
+    }
+}

@@ -1,0 +1,32 @@
+//! Recordings in MCAP (mcap.dev/spec): robot logs of ROS 2, ROS 1 and Foxglove.
+//!
+//! A message's way in: records (in chunks or not) → decoder (by the channel's schema) → a reading waits for its turn, a
+//! transform or pose goes into the tree of frames → the reading is placed, and handed on as a record.
+mod body;
+mod clocks;
+mod decode;
+mod fields;
+mod history;
+mod options;
+mod order;
+mod plane;
+mod raw;
+mod reader;
+mod records;
+mod registry;
+mod rigid;
+mod sensors;
+mod source;
+mod summary;
+mod topics;
+mod tree;
+mod whereabouts;
+mod window;
+pub mod write;
+
+pub use self::{
+    clocks::ClockChoice,
+    options::Options,
+    raw::{Attachment, Channel, Message, Metadata, Schema, Tap},
+    source::McapReadings,
+};

@@ -1,0 +1,185 @@
+//! A recording as a source of readings.
+
+use std::{fs::File, sync::Arc};
+
+use super::{
+    options::Options,
+    raw::Tap,
+    reader::Reader,
+    records::{Item, Limits, Records},
+    registry::Registry,
+    topics::{self, is_clock, kind_of},
+    window::Recording,
+};
+use crate::{
+    error::{Error, Place, Problem, Result},
+    log::{Input, Next, Row, Source},
+    pipeline::AnyTrack,
+    rig::Rig,
+};
+
+/// Bytes that are read without a reading before a caller hears of it.
+const PATIENCE: u64 = 1 << 20;
+
+/// A recording in MCAP: readings with where their sensors were and what they saw.
+pub struct McapReadings {
+    records: Records,
+    reader: Reader,
+    tap: Option<Box<dyn Tap>>,
+    ended: bool,
+}
+
+impl McapReadings {
+    /// Opens the recording at `path`, which is read as a file where it is one, else the `input` that was opened for it.
+    ///
+    /// `track` has the poses where they come from a second file.
+    ///
+    /// # Errors
+    /// It can't be read, is no recording, or, where its summary tells, has no readings, no poses, or none of a topic that was
+    /// asked for.
+    pub fn open(
+        path: &str,
+        input: Input,
+        rig: Option<Arc<Rig>>,
+        track: Option<AnyTrack>,
+        options: Options,
+    ) -> Result<Self> {
+        let name = input.name.clone();
+        let recording = match input.length {
+            Some(length) if path != "-" => {
+                let file = File::open(path).map_err(|source| Error::Io { file: name.clone(), source })?;
+                Recording::File(file, length)
+            }
+            _ => Recording::Stream(input.reader),
+        };
+        let everything = options.everything;
+        let topics = options.range_topics.clone();
+        let registry = Registry::new(Box::new(move |channel| everything || kind_of(channel, &topics).is_some()));
+        let limits = Limits { max_message: options.max_message, everything };
+        let records = Records::open(recording, name.clone(), registry, limits)?;
+        let reader = Reader::new(name, rig, track, options);
+        let readings = Self { records, reader, tap: None, ended: false };
+        if readings.records.is_complete() {
+            readings.check_topics()?;
+        }
+        Ok(readings)
+    }
+
+    /// The profile in the recording's header; empty where there is none.
+    pub fn profile(&self) -> &str {
+        self.records.profile()
+    }
+
+    /// How much later than others a message may be recorded and still be put in order, in nanoseconds.
+    pub fn window(&self) -> u64 {
+        self.reader.options().reorder
+    }
+
+    /// From now on `tap` is told all that the recording holds. Give [`Options::everything`], and do it before anything is read.
+    pub fn set_tap(&mut self, tap: Box<dyn Tap>) {
+        self.tap = Some(tap);
+    }
+
+    /// Refuses a recording without readings or without poses, once all channels are known.
+    fn check_topics(&self) -> Result<()> {
+        let channels = self.records.registry().channels();
+        topics::check(channels, self.reader.options(), self.reader.has_track()).map_err(|message| {
+            let place = Place { file: self.reader.name().clone(), line: 0, byte: 0 };
+            Error::Format { place, message }
+        })
+    }
+
+    /// The topic of each sensor that has had a reading, by the sensor's index.
+    pub fn topic(&self, sensor: u16) -> Option<&str> {
+        self.reader.topic(sensor)
+    }
+
+    /// Where the poses come from, in words, once that was decided.
+    pub fn pose_source(&self) -> Option<String> {
+        self.reader.whereabouts().source()
+    }
+
+    /// Topics that have poses, too, and are not used.
+    pub fn other_poses(&self) -> Vec<&str> {
+        self.reader.whereabouts().unused()
+    }
+
+    /// What a person should know of how the recording was read: which clocks it has, what was assumed.
+    pub fn notes(&self) -> Vec<String> {
+        self.reader.notes()
+    }
+
+    /// The recording has ended.
+    fn end(&mut self) -> Result<()> {
+        self.ended = true;
+        self.reader.end();
+        let nothing = self.reader.saw_nothing();
+        // Where the summary was not there to tell.
+        if nothing && !self.records.is_complete() && !self.records.is_damaged() { self.check_topics() } else { Ok(()) }
+    }
+
+    fn take_next(&mut self, problems: &mut dyn FnMut(Problem)) -> Result<()> {
+        let Some((item, byte)) = self.records.next()? else { return self.end() };
+        let tap = self.tap.as_deref_mut();
+        match (item, tap) {
+            (Item::Problem(problem), _) => problems(problem),
+            (Item::Message(channel, message), tap) => {
+                if let Some(tap) = tap {
+                    tap.message(message)?;
+                }
+                self.reader.message(channel, message, byte, problems);
+            }
+            (Item::Channel(channel), tap) => {
+                if is_clock(channel) {
+                    self.reader.has_clock();
+                }
+                if let Some(tap) = tap {
+                    tap.channel(channel)?;
+                }
+            }
+            (Item::Header(profile, library), Some(tap)) => tap.header(profile, library)?,
+            (Item::Metadata(metadata), Some(tap)) => tap.metadata(&metadata)?,
+            (Item::Attachment(attachment), Some(tap)) => tap.attachment(attachment)?,
+            (Item::Header(..) | Item::Metadata(_) | Item::Attachment(_), None) => {}
+        }
+        Ok(())
+    }
+}
+
+impl Source for McapReadings {
+    fn next_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Next> {
+        row.readings.clear();
+        row.views.clear();
+        row.pose = None;
+        row.empty = 0;
+        let start = self.records.position();
+        loop {
+            if let Some(next) = self.reader.next_due(row, problems)? {
+                return Ok(next);
+            }
+            if self.ended {
+                return Ok(Next::End);
+            }
+            self.take_next(problems)?;
+            if self.records.drained() || self.records.position() > start + PATIENCE {
+                return Ok(Next::Unusable);
+            }
+        }
+    }
+
+    fn drained(&self) -> bool {
+        !self.ended && self.records.drained()
+    }
+
+    fn position(&self) -> u64 {
+        self.records.position()
+    }
+
+    fn has_poses(&self) -> bool {
+        true
+    }
+
+    fn ids(&self) -> &[Arc<str>] {
+        self.reader.ids()
+    }
+}

@@ -1,0 +1,391 @@
+//! What is fused, as a recording.
+
+use std::{collections::BTreeSet, io::Write, sync::Arc};
+
+use atm_core::{ArcCrossing, Echo, Isometry2, Reading, UnitComplex, Vector2};
+
+use super::{
+    clouds::{color_of, earliest, put_crossing, put_echo, runs},
+    content::{Cloud, Content, Transform, pose_of},
+    file::{Layout, McapFile},
+    merged::Merged,
+    options::{Contents, Options, Transforms},
+    pass::{PassThrough, Shared},
+    points::{PointLayout, Points},
+    recording::origin,
+    ros2::qos::Durability,
+    schema::{Encoder, SchemaKind},
+    sensors::Sensors,
+    so_far::{EchoesSoFar, PathSoFar},
+    sweep::{CROSSING_COLOR, CROSSING_GROUP, MOST_POINTS, Placed, Sweep},
+    topics::{self, Topic},
+};
+use crate::{
+    error::Result,
+    log::{Frames, Row},
+    pipeline::EchoSink,
+    track::Pose,
+};
+
+/// Writes what is fused as an MCAP recording, a message of each sort for each sweep of the sensors.
+///
+/// Every message is logged at the time of the record that ended its sweep, at most a tenth of a second after the one that caused
+/// its reports; the stamps in it are the readings'. Dropped without [`McapSink::finish`], it leaves a file without a summary.
+pub struct McapSink<W: Write> {
+    options: Options,
+    file: Shared<W>,
+    encoder: Encoder,
+    /// By [`Topic`]; empty until something is written.
+    channels: Vec<(Topic, u16)>,
+    layouts: [PointLayout; 3],
+    sensors: Sensors,
+    sweep: Sweep,
+    echoes: EchoesSoFar,
+    path: PathSoFar,
+    /// The latest record's log time; never goes back.
+    log_time: u64,
+    robot: Isometry2<f64>,
+    bytes: Vec<u8>,
+}
+
+impl<W: Write> McapSink<W> {
+    /// Begins a recording; `name` is what errors call the output.
+    ///
+    /// # Errors
+    /// What the output says.
+    pub fn create(out: W, name: Arc<str>, options: Options) -> Result<Self> {
+        let kind = options.kind;
+        // A profile promises something of every channel, those that are copied included.
+        let profile = match &options.passing {
+            Some(passing) if passing.profile != kind.profile() => "",
+            _ => kind.profile(),
+        };
+        let mut file = McapFile::create(out, name, profile, options.layout)?;
+        if options.passing.is_none() && kind == SchemaKind::Ros2 {
+            file.metadata(&origin())?;
+        }
+        let window = options.passing.as_ref().map_or(0, |passing| passing.window);
+        // Transforms of both may share a topic.
+        let topics: BTreeSet<String> =
+            Topic::ALL.iter().filter(|topic| !topic.is_transforms()).map(|topic| topic.name(&options)).collect();
+        let layout = |points| PointLayout::new(kind, points);
+        Ok(Self {
+            file: Shared::new(Merged::new(file, window, topics)),
+            encoder: Encoder::new(kind),
+            channels: Vec::new(),
+            layouts: [Points::Echoes, Points::Crossings, Points::Dots].map(layout),
+            sensors: Sensors::new(options.mounts.clone()),
+            sweep: Sweep::new(options.history),
+            echoes: EchoesSoFar::default(),
+            path: PathSoFar::new(),
+            log_time: 0,
+            robot: Isometry2::identity(),
+            bytes: Vec::new(),
+            options,
+        })
+    }
+
+    /// Takes another recording's contents in, while this one is written. Give [`Options::passing`].
+    pub fn pass_through(&self) -> PassThrough<W> {
+        PassThrough::new(self.file.clone())
+    }
+
+    /// Messages of the other recording that came later than the window allows, and stand out of order; 0 once it is finished.
+    pub fn late(&self) -> u64 {
+        self.file.with(|file| Ok(file.late())).unwrap_or(0)
+    }
+
+    /// Writes what is still gathered and the summary, and returns what the recording was written to.
+    ///
+    /// # Errors
+    /// What the output says.
+    pub fn finish(mut self) -> Result<W> {
+        self.begin(0)?;
+        self.end_sweep(true)?;
+        self.file.take()?.finish()
+    }
+
+    /// Takes over what the log calls its frames, and leaves out the transforms that another recording, where one is copied, has.
+    fn adopt(&mut self, frames: &Frames) {
+        self.options.fixed_frame = frames.fixed.to_string();
+        self.options.robot_frame = frames.robot.to_string();
+        if self.options.passing.is_some() {
+            self.options.transforms = match (frames.has_robot, frames.has_mounts) {
+                (true, true) => Transforms::None,
+                (false, true) => Transforms::Robot,
+                // The robot's own stand beside those that say the same.
+                (_, false) => Transforms::All,
+            };
+        }
+    }
+
+    /// Declares the channels and says where the sensors sit, once, with `t` as the time.
+    fn begin(&mut self, t: i64) -> Result<()> {
+        if !self.channels.is_empty() {
+            return Ok(());
+        }
+        let options = &self.options;
+        let wanted = Topic::ALL.into_iter().filter(|topic| topic.is_wanted(options));
+        self.channels = self.file.with(|file| {
+            let words = file.words();
+            wanted
+                .map(|topic| {
+                    let durability =
+                        if topic == Topic::Mounts { Durability::TransientLocal } else { Durability::Volatile };
+                    let (schema, metadata) =
+                        (options.kind.schema(topic.sort()), options.kind.metadata(durability, words));
+                    Ok((topic, file.channel(&topic.name(options), &schema, options.kind.encoding(), &metadata)?))
+                })
+                .collect()
+        })?;
+        let mounts: Vec<(String, Pose)> =
+            self.sensors.mounted().map(|(sensor, pose)| (self.sensor_frame(sensor), pose)).collect();
+        let transforms: Vec<Transform<'_>> = mounts
+            .iter()
+            .map(|(child, pose)| Transform { t, parent: &self.options.robot_frame, child, pose: *pose })
+            .collect();
+        if transforms.is_empty() {
+            return Ok(());
+        }
+        let content = Content::Transforms(&transforms);
+        send(&self.file, &mut self.encoder, channel(&self.channels, Topic::Mounts), self.log_time, &content)
+    }
+
+    fn sensor_frame(&self, sensor: u16) -> String {
+        self.sensors.frame(sensor, [&self.options.fixed_frame, &self.options.robot_frame])
+    }
+
+    /// Writes what the sweep has gathered, and begins the next.
+    fn end_sweep(&mut self, at_end: bool) -> Result<()> {
+        self.write_places()?;
+        self.write_echoes()?;
+        self.write_crossings()?;
+        self.write_arcs()?;
+        self.write_so_far(at_end)?;
+        self.sweep.clear();
+        Ok(())
+    }
+
+    /// Sends a message, where its topic is written.
+    fn send(&mut self, topic: Topic, content: &Content<'_>) -> Result<()> {
+        send(&self.file, &mut self.encoder, channel(&self.channels, topic), self.log_time, content)
+    }
+
+    /// Transforms and the pose.
+    fn write_places(&mut self) -> Result<()> {
+        let placed = std::mem::take(&mut self.sweep.placed);
+        if placed.is_empty() {
+            return Ok(());
+        }
+        let (fixed, robot) = (self.options.fixed_frame.clone(), self.options.robot_frame.clone());
+        let frame = |placed: &Placed| placed.sensor.map(|sensor| self.sensor_frame(sensor));
+        let frames: Vec<Option<String>> = placed.iter().map(frame).collect();
+        let transforms: Vec<Transform<'_>> = placed
+            .iter()
+            .zip(&frames)
+            .map(|(&Placed { t, pose, .. }, sensor)| match sensor {
+                Some(child) => Transform { t, parent: &robot, child, pose },
+                None => Transform { t, parent: &fixed, child: &robot, pose },
+            })
+            .collect();
+        self.send(Topic::Robot, &Content::Transforms(&transforms))?;
+        if let Some((t, pose)) = self.sweep.pose {
+            self.send(Topic::Pose, &Content::Pose { t, frame: &fixed, pose })?;
+        }
+        // The memory is kept.
+        self.sweep.placed = placed;
+        Ok(())
+    }
+
+    fn write_echoes(&mut self) -> Result<()> {
+        let echoes = std::mem::take(&mut self.sweep.echoes);
+        for run in runs(&echoes, |echo| echo.t) {
+            let since = earliest(run, |echo| echo.t);
+            let [layout, ..] = &self.layouts;
+            self.bytes.clear();
+            for echo in run {
+                let (place, color) = (echo.position, color_of(echo.kind));
+                layout.push(&mut self.bytes, place.x, place.y, color, |bytes| put_echo(bytes, echo, since));
+            }
+            self.send_cloud(Topic::Echoes, since, 0)?;
+        }
+        self.sweep.echoes = echoes;
+        self.sweep.echoes.clear();
+        Ok(())
+    }
+
+    fn write_crossings(&mut self) -> Result<()> {
+        if self.sweep.crossings.is_empty() {
+            return Ok(());
+        }
+        self.sweep.draw_crossings();
+        let crossings = std::mem::take(&mut self.sweep.crossings);
+        for run in runs(&crossings, |crossing| crossing.t) {
+            let since = earliest(run, |crossing| crossing.t);
+            let [_, layout, _] = &self.layouts;
+            self.bytes.clear();
+            for crossing in run {
+                let place = crossing.position;
+                layout.push(&mut self.bytes, place.x, place.y, CROSSING_COLOR, |bytes| {
+                    put_crossing(bytes, crossing, since);
+                });
+            }
+            self.send_cloud(Topic::CrossingPoints, since, 1)?;
+        }
+        self.sweep.crossings = crossings;
+        self.sweep.crossings.clear();
+        self.send_scene(Topic::Crossings)
+    }
+
+    fn write_arcs(&mut self) -> Result<()> {
+        if self.sweep.arcs.drawings.is_empty() {
+            return Ok(());
+        }
+        self.send_scene(Topic::Arcs)?;
+        let [.., dots] = &self.layouts;
+        self.bytes.clear();
+        for point in &self.sweep.arcs.points {
+            dots.push(&mut self.bytes, point.x, point.y, self.sweep.arcs.color, |_| {});
+        }
+        self.send_cloud(Topic::ArcPoints, self.sweep.t, 2)
+    }
+
+    /// Echoes and path so far, where they have grown.
+    fn write_so_far(&mut self, at_end: bool) -> Result<()> {
+        if self.echoes.take_due(at_end) {
+            let [.., dots] = &self.layouts;
+            self.bytes.clear();
+            for (place, kind) in self.echoes.iter() {
+                dots.push(&mut self.bytes, place.x, place.y, color_of(*kind), |_| {});
+            }
+            self.send_cloud(Topic::Map, self.sweep.t, 2)?;
+        }
+        if self.path.take_due(at_end) {
+            let poses = self.path.poses();
+            let (t, frame) = (self.sweep.t, self.options.fixed_frame.clone());
+            self.send(Topic::Path, &Content::Path { t, frame: &frame, poses: &poses })?;
+            let [.., dots] = &self.layouts;
+            self.bytes.clear();
+            for (_, pose) in &poses {
+                dots.push(&mut self.bytes, pose.x, pose.y, topics::PATH_COLOR, |_| {});
+            }
+            self.send_cloud(Topic::PathPoints, t, 2)?;
+        }
+        Ok(())
+    }
+
+    /// Sends the points that were gathered in `bytes`, of the layout with this index.
+    fn send_cloud(&mut self, topic: Topic, t: i64, layout: usize) -> Result<()> {
+        let Some(layout) = self.layouts.get(layout) else { return Ok(()) };
+        let cloud = Cloud { t, frame: &self.options.fixed_frame, layout, points: &self.bytes };
+        let channel = channel(&self.channels, topic);
+        send(&self.file, &mut self.encoder, channel, self.log_time, &Content::Cloud(cloud))
+    }
+
+    /// Sends the sweep's arcs or marks.
+    fn send_scene(&mut self, topic: Topic) -> Result<()> {
+        let scene = if topic == Topic::Arcs { &self.sweep.arcs } else { &self.sweep.marks };
+        let sensors = &self.sensors;
+        let groups = |group| if group == CROSSING_GROUP { "crossings".to_owned() } else { sensors.id(group) };
+        let content = Content::Scene { frame: &self.options.fixed_frame, scene, groups: &groups };
+        send(&self.file, &mut self.encoder, channel(&self.channels, topic), self.log_time, &content)
+    }
+}
+
+fn channel(channels: &[(Topic, u16)], topic: Topic) -> Option<u16> {
+    channels.iter().find(|(known, _)| *known == topic).map(|(_, number)| *number)
+}
+
+fn send<W: Write>(
+    file: &Shared<W>,
+    encoder: &mut Encoder,
+    channel: Option<u16>,
+    log_time: u64,
+    content: &Content<'_>,
+) -> Result<()> {
+    match channel {
+        Some(channel) => file.with(|file| file.write(channel, log_time, encoder.encode(content))),
+        None => Ok(()),
+    }
+}
+
+impl<W: Write> EchoSink for McapSink<W> {
+    fn sensors(&mut self, ids: &[Arc<str>]) -> Result<()> {
+        match self.sensors.learn(ids) {
+            Some(metadata) => self.file.with(|file| file.metadata(&metadata)),
+            None => Ok(()),
+        }
+    }
+
+    fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        let log_time = u64::try_from(row.log_time).unwrap_or(0).max(self.log_time);
+        if self.sweep.is_over(row, log_time) {
+            self.end_sweep(false)?;
+        }
+        self.log_time = log_time;
+        if let (Some(frames), true) = (&row.frames, self.channels.is_empty()) {
+            self.adopt(frames);
+        }
+        self.begin(row.t)?;
+        self.robot = Isometry2::from_parts(
+            Vector2::new(pose.x, pose.y).into(),
+            UnitComplex::from_cos_sin_unchecked(libm::cos(pose.yaw), libm::sin(pose.yaw)),
+        );
+        self.sweep.record(row, log_time, pose);
+        if self.options.contents == Contents::Everything {
+            self.path.push(row.t, pose);
+        }
+        Ok(())
+    }
+
+    fn reading(&mut self, reading: &Reading<f64>) -> Result<()> {
+        if self.options.contents == Contents::Everything {
+            self.sweep.draw(reading);
+            if self.options.transforms == Transforms::All && !self.sensors.is_mounted(reading.sensor) {
+                let pose = pose_of(&self.robot.inv_mul(&reading.pose));
+                self.sweep.placed.push(Placed { t: reading.t, sensor: Some(reading.sensor), pose });
+            }
+        }
+        Ok(())
+    }
+
+    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
+        if self.options.contents == Contents::Everything {
+            self.sweep.echoes.push(*echo);
+            self.echoes.push(echo.position, echo.kind);
+            if self.sweep.echoes.len() >= MOST_POINTS {
+                self.write_echoes()?;
+            }
+        }
+        Ok(true)
+    }
+
+    fn wants_crossings(&self) -> bool {
+        true
+    }
+
+    fn crossings(&mut self, crossings: &[ArcCrossing<f64>]) -> Result<()> {
+        self.sweep.crossings.extend_from_slice(crossings);
+        if self.sweep.crossings.len() >= MOST_POINTS {
+            self.write_crossings()?;
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        if self.options.layout != Layout::Immediate || self.channels.is_empty() {
+            return Ok(());
+        }
+        self.end_sweep(false)?;
+        self.file.with(Merged::flush)
+    }
+}
+
+impl<W: Write> Drop for McapSink<W> {
+    fn drop(&mut self) {
+        // What can still be saved of a run that failed: its error is known already.
+        if !self.channels.is_empty() {
+            let _ = self.end_sweep(false);
+        }
+    }
+}

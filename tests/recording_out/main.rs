@@ -1,0 +1,10 @@
+//! Recordings that are written, read back by decoders of their own.
+
+mod cdr;
+mod cloud;
+mod content;
+mod file;
+mod passing;
+mod proto;
+mod robot;
+mod sample;
