@@ -8,7 +8,7 @@ use atm::{
     log::{
         Row,
         echoes::TableWriter,
-        mcap::write::{Contents, Layout, McapSink, Options},
+        mcap::write::{Contents, Frames, Layout, McapSink, Options},
         output::Output,
     },
     pipeline::{EchoSink, SensorModel},
@@ -65,7 +65,7 @@ impl Outputs {
             kind: args.schema.into(),
             layout: layout(args.emit, output),
             contents,
-            mounts: sensors.iter().map(|sensor| sensor.mount).collect(),
+            frames: Frames { mounts: sensors.iter().map(|sensor| sensor.mount).collect(), ..Frames::default() },
             history: args.history,
             ..Options::default()
         };
@@ -76,7 +76,7 @@ impl Outputs {
             let name = Arc::clone(output.name());
             if is_recording(path, format) {
                 let options = options(contents, &output);
-                return McapSink::create(output, name, options).map(|sink| Written::Recording(Box::new(sink)));
+                return Ok(Written::Recording(Box::new(McapSink::new(output, name, options))));
             }
             let table = match contents {
                 Contents::Everything => TableWriter::echoes(output, ids()),
