@@ -95,10 +95,11 @@ pub enum OpenLog {
 }
 
 impl OpenLog {
-    fn recording(&self) -> Option<&McapReadings> {
+    /// Within which time it is put in order, in nanoseconds, where it is a recording.
+    fn window(&self) -> Option<u64> {
         match self {
             Self::Csv(..) => None,
-            Self::Mcap(log) => Some(log),
+            Self::Mcap(log) => Some(log.window()),
         }
     }
 
@@ -320,7 +321,7 @@ impl FuseJob {
         let input = outputs::Input {
             ids: self.log.rig.as_deref().map(Rig::ids).unwrap_or_default(),
             mounts: sensors.iter().map(|sensor| sensor.mount).collect(),
-            recording: log.recording(),
+            window: log.window(),
         };
         let mut outputs = Outputs::create(self, settings, &input)?;
         if let (OpenLog::Mcap(log), true, Some(tap)) = (&mut log, self.passthrough, outputs.tap()) {

@@ -130,7 +130,7 @@ fn what_is_not_finished_is_cut_off_and_all_it_had_can_be_read() {
         }
     }
     let bytes = Arc::new(Mutex::new(Vec::new()));
-    let mut sink = McapSink::create(Kept(Arc::clone(&bytes)), "out".into(), options(KINDS[0])).unwrap();
+    let mut sink = McapSink::new(Kept(Arc::clone(&bytes)), "out".into(), options(KINDS[0]));
     let table = doorway() + "bad\n";
     assert!(matches!(fuse(&table, Emit::Latest, &mut sink), Err(Error::Strict { .. })));
     drop(sink);
@@ -164,7 +164,7 @@ impl Write for Piped {
 fn a_reader_at_a_pipe_has_each_echo_when_the_input_pauses() {
     let pipe = Piped::default();
     let immediate = Options { layout: Layout::Immediate, ..options(KINDS[1]) };
-    let mut sink = McapSink::create(pipe.clone(), "pipe".into(), immediate).unwrap();
+    let mut sink = McapSink::new(pipe.clone(), "pipe".into(), immediate);
     let so_far = |pipe: &Piped| {
         let bytes = pipe.0.lock().unwrap().clone();
         let stream = mcap::MessageStream::new_with_options(&bytes, ReadOptions::IgnoreEndMagic.into()).unwrap();
@@ -213,9 +213,8 @@ fn a_full_disk_is_named_and_nothing_panics() {
         let options = Options { layout, ..options(KINDS[0]) };
         let whole = recorded(&doorway(), options.clone()).len();
         for room in (0..whole).step_by(whole / 7) {
-            let failed = McapSink::create(Full(AtomicUsize::new(room)), "out.mcap".into(), options.clone())
-                .and_then(|mut sink| fuse(&doorway(), Emit::Settled, &mut sink).map(|()| sink))
-                .and_then(McapSink::finish);
+            let mut sink = McapSink::new(Full(AtomicUsize::new(room)), "out.mcap".into(), options.clone());
+            let failed = fuse(&doorway(), Emit::Settled, &mut sink).and_then(|()| sink.finish());
             match failed {
                 Err(Error::Io { file, source }) => {
                     assert_eq!((&*file, source.kind()), ("out.mcap", io::ErrorKind::StorageFull));

@@ -27,7 +27,7 @@ const MOST_ENTRIES: usize = 1 << 16;
 const HEAD: usize = 9;
 /// A chunk's fields before its compression.
 const CHUNK_HEAD: usize = 32;
-/// Longest name of a compression or a profile.
+/// Longest name of a compression.
 const LONGEST_NAME: usize = 32;
 
 /// Opcodes (mcap.dev/spec, "Records").
@@ -156,7 +156,6 @@ pub(super) struct Records {
     /// Channels that were handed on.
     told: Vec<u64>,
     damaged: bool,
-    profile: String,
 }
 
 impl Records {
@@ -170,11 +169,10 @@ impl Records {
         let complete = statistics.is_some_and(|count| count as usize == registry.channels().count());
         window.go_to(0).map_err(failed)?;
         window.begin_checksum();
-        let (mut arena, mut profile) = (Arena::default(), String::new());
+        let mut arena = Arena::default();
         let start = window.need(MAGIC.len()).map_err(failed)?;
         let stage = if start == MAGIC {
             window.use_up(MAGIC.len());
-            profile = header_profile(&mut window).map_err(failed)?;
             Stage::File(window)
         } else if MAGIC.starts_with(start) {
             let count = start.len();
@@ -184,18 +182,7 @@ impl Records {
             let place = Place { file: name, line: 0, byte: 0 };
             return Err(Error::Format { place, message: "no MCAP recording: it does not begin as one".into() });
         };
-        Ok(Self {
-            name,
-            stage,
-            position: 0,
-            registry,
-            complete,
-            limits,
-            arena,
-            told: vec![0; 1 << 10],
-            damaged: false,
-            profile,
-        })
+        Ok(Self { name, stage, position: 0, registry, complete, limits, arena, told: vec![0; 1 << 10], damaged: false })
     }
 
     /// The channels known so far.
@@ -206,11 +193,6 @@ impl Records {
     /// Whether all channels of the file are known.
     pub(super) fn is_complete(&self) -> bool {
         self.complete
-    }
-
-    /// The profile in the header; empty where there is none.
-    pub(super) fn profile(&self) -> &str {
-        &self.profile
     }
 
     /// Whether the file ended before it should have.
@@ -605,14 +587,6 @@ impl Records {
         let saved = self.arena.entries.iter().filter(|entry| matches!(entry.what, Kept::Record(op::MESSAGE))).count();
         self.cut(window, byte, &format!("a chunk of which {saved} messages could be read"))
     }
-}
-
-/// The profile in the header, which is left to be read.
-fn header_profile(window: &mut Window<Recording>) -> io::Result<String> {
-    let most = HEAD + 4 + LONGEST_NAME;
-    let mut fields = Fields(window.need(most)?);
-    let is_header = fields.bytes(1) == Some(&[op::HEADER]) && fields.u64().is_some();
-    Ok(fields.text().filter(|_| is_header).unwrap_or_default().to_owned())
 }
 
 fn framed(head: [u8; HEAD], byte: u64) -> Frame {

@@ -50,7 +50,7 @@ impl Topic {
     /// Transforms are looked for under these two names alone in ROS. Beside another recording's, those of another kind have names
     /// of their own.
     pub(super) fn name(self, options: &Options) -> String {
-        let apart = self.is_transforms() && options.passing.is_some() && options.kind == SchemaKind::Foxglove;
+        let apart = self.is_transforms() && options.pass_window.is_some() && options.kind == SchemaKind::Foxglove;
         let name = match self {
             Self::Mounts => "/tf_static",
             Self::Robot => "/tf",
@@ -86,8 +86,8 @@ impl Topic {
         match self {
             Self::Crossings | Self::CrossingPoints => true,
             _ if options.contents == Contents::Crossings => false,
-            Self::Mounts => options.transforms == Transforms::All && !options.mounts.is_empty(),
-            Self::Robot => options.transforms != Transforms::None,
+            Self::Mounts => options.frames.transforms == Transforms::All && !options.frames.mounts.is_empty(),
+            Self::Robot => options.frames.transforms != Transforms::None,
             _ => true,
         }
     }
