@@ -5,7 +5,7 @@ use atm_core::{Point2, Vector2};
 
 use super::{
     frame::Frame,
-    page::{Anchor, Font, Ink},
+    ink::{Anchor, Font, Ink},
     scene::{Cone, Content, Grid, Layer, Robot, Scene, Wall},
     style::{self, Names, SHADES},
     svg::PathData,
