@@ -10,7 +10,7 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use support::{recording::*, *};
+use support::recording::*;
 
 /// Most memory any run here may take, in KiB.
 const MOST: u64 = 96 * 1024;

@@ -11,7 +11,7 @@ use super::{
     merged::Merged,
     options::{Contents, Frames, Options, Transforms},
     pass::{PassThrough, Shared},
-    points::{PointLayout, Points},
+    points::{Layouts, Points},
     ros2::qos::Durability,
     schema::Encoder,
     sensors::Sensors,
@@ -31,7 +31,7 @@ pub struct McapSink<W: Write> {
     encoder: Encoder,
     /// By [`Topic`]; empty until something is written.
     channels: Vec<(Topic, u16)>,
-    layouts: [PointLayout; 3],
+    layouts: Layouts,
     sensors: Sensors,
     sweep: Sweep,
     echoes: EchoesSoFar,
@@ -52,12 +52,11 @@ impl<W: Write> McapSink<W> {
         // Transforms of both may share a topic.
         let topics: BTreeSet<String> =
             Topic::ALL.iter().filter(|topic| !topic.is_transforms()).map(|topic| topic.name(&options)).collect();
-        let layout = |points| PointLayout::new(kind, points);
         Self {
             file: Shared::new(Merged::new(file, kind, options.pass_window.unwrap_or(0), topics)),
             encoder: Encoder::new(kind),
             channels: Vec::new(),
-            layouts: [Points::Echoes, Points::Crossings, Points::Dots].map(layout),
+            layouts: Layouts::new(kind),
             sensors: Sensors::default(),
             sweep: Sweep::new(options.history),
             echoes: EchoesSoFar::default(),
@@ -94,7 +93,7 @@ impl<W: Write> McapSink<W> {
         self.file.take()?.finish()
     }
 
-    /// Declares the channels and says where the sensors sit, once, with `t` as the time.
+    /// Declares the channels and says what holds from the beginning, once, with `t` as the time.
     fn begin(&mut self, t: i64) -> Result<()> {
         if !self.channels.is_empty() {
             return Ok(());
@@ -113,14 +112,21 @@ impl<W: Write> McapSink<W> {
                 })
                 .collect()
         })?;
+        self.say_mounts(t)?;
+        // Viewers place a topic in its frame from its first message on, and complain until then.
+        for topic in [Topic::Echoes, Topic::Map, Topic::CrossingPoints] {
+            self.bytes.clear();
+            self.send_cloud(topic, t)?;
+        }
+        Ok(())
+    }
+
+    fn say_mounts(&mut self, t: i64) -> Result<()> {
         let frames = &self.options.frames;
         let sensor = |(sensor, mount)| (self.sensors.frame(sensor, frames), pose_of(mount));
         let mounts: Vec<(String, Pose)> = (0..=u16::MAX).zip(&frames.mounts).map(sensor).collect();
         let transforms: Vec<Transform<'_>> =
             mounts.iter().map(|(child, pose)| Transform { t, parent: &frames.robot, child, pose: *pose }).collect();
-        if transforms.is_empty() {
-            return Ok(());
-        }
         let content = Content::Transforms(&transforms);
         send(&self.file, &mut self.encoder, channel(&self.channels, Topic::Mounts), self.log_time, &content)
     }
@@ -171,13 +177,13 @@ impl<W: Write> McapSink<W> {
         let echoes = std::mem::take(&mut self.sweep.echoes);
         for run in runs(&echoes, |echo| echo.t) {
             let since = earliest(run, |echo| echo.t);
-            let [layout, ..] = &self.layouts;
+            let layout = self.layouts.of(Points::Echoes);
             self.bytes.clear();
             for echo in run {
                 let (place, color) = (echo.position, color_of(echo.kind));
                 layout.push(&mut self.bytes, place.x, place.y, color, |bytes| put_echo(bytes, echo, since));
             }
-            self.send_cloud(Topic::Echoes, since, 0)?;
+            self.send_cloud(Topic::Echoes, since)?;
         }
         self.sweep.echoes = echoes;
         self.sweep.echoes.clear();
@@ -192,7 +198,7 @@ impl<W: Write> McapSink<W> {
         let crossings = std::mem::take(&mut self.sweep.crossings);
         for run in runs(&crossings, |crossing| crossing.t) {
             let since = earliest(run, |crossing| crossing.t);
-            let [_, layout, _] = &self.layouts;
+            let layout = self.layouts.of(Points::Crossings);
             self.bytes.clear();
             for crossing in run {
                 let place = crossing.position;
@@ -200,7 +206,7 @@ impl<W: Write> McapSink<W> {
                     put_crossing(bytes, crossing, since);
                 });
             }
-            self.send_cloud(Topic::CrossingPoints, since, 1)?;
+            self.send_cloud(Topic::CrossingPoints, since)?;
         }
         self.sweep.crossings = crossings;
         self.sweep.crossings.clear();
@@ -212,41 +218,41 @@ impl<W: Write> McapSink<W> {
             return Ok(());
         }
         self.send_scene(Topic::Arcs)?;
-        let [.., dots] = &self.layouts;
+        let dots = self.layouts.of(Points::Dots);
         self.bytes.clear();
         for point in &self.sweep.arcs.points {
             dots.push(&mut self.bytes, point.x, point.y, self.sweep.arcs.color, |_| {});
         }
-        self.send_cloud(Topic::ArcPoints, self.sweep.t, 2)
+        self.send_cloud(Topic::ArcPoints, self.sweep.t)
     }
 
     /// Echoes and path so far, where they have grown.
     fn write_so_far(&mut self, at_end: bool) -> Result<()> {
         if self.echoes.take_due(at_end) {
-            let [.., dots] = &self.layouts;
+            let dots = self.layouts.of(Points::Dots);
             self.bytes.clear();
             for (place, kind) in self.echoes.iter() {
                 dots.push(&mut self.bytes, place.x, place.y, color_of(*kind), |_| {});
             }
-            self.send_cloud(Topic::Map, self.sweep.t, 2)?;
+            self.send_cloud(Topic::Map, self.sweep.t)?;
         }
         if self.path.take_due(at_end) {
             let poses = self.path.poses();
             let (t, frame) = (self.sweep.t, self.options.frames.fixed.clone());
             self.send(Topic::Path, &Content::Path { t, frame: &frame, poses: &poses })?;
-            let [.., dots] = &self.layouts;
+            let dots = self.layouts.of(Points::Dots);
             self.bytes.clear();
             for (_, pose) in &poses {
                 dots.push(&mut self.bytes, pose.x, pose.y, topics::PATH_COLOR, |_| {});
             }
-            self.send_cloud(Topic::PathPoints, t, 2)?;
+            self.send_cloud(Topic::PathPoints, t)?;
         }
         Ok(())
     }
 
-    /// Sends the points that were gathered in `bytes`, of the layout with this index.
-    fn send_cloud(&mut self, topic: Topic, t: i64, layout: usize) -> Result<()> {
-        let Some(layout) = self.layouts.get(layout) else { return Ok(()) };
+    /// Sends the points that were gathered in `bytes`.
+    fn send_cloud(&mut self, topic: Topic, t: i64) -> Result<()> {
+        let layout = self.layouts.of(topic.points());
         let cloud = Cloud { t, frame: &self.options.frames.fixed, layout, points: &self.bytes };
         let channel = channel(&self.channels, topic);
         send(&self.file, &mut self.encoder, channel, self.log_time, &Content::Cloud(cloud))

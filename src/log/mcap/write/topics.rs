@@ -3,6 +3,7 @@
 use super::{
     content::{Color, Sort},
     options::{Contents, Options, Transforms},
+    points::Points,
     schema::SchemaKind,
 };
 
@@ -74,6 +75,15 @@ impl Topic {
             Self::Path => Sort::Path,
             Self::Arcs | Self::Crossings => Sort::Scene,
             Self::PathPoints | Self::Echoes | Self::Map | Self::ArcPoints | Self::CrossingPoints => Sort::Cloud,
+        }
+    }
+
+    /// What a cloud of the topic is made of.
+    pub(super) const fn points(self) -> Points {
+        match self {
+            Self::Echoes => Points::Echoes,
+            Self::CrossingPoints => Points::Crossings,
+            _ => Points::Dots,
         }
     }
 
