@@ -90,7 +90,6 @@ impl Outputs {
                     frames: Frames { mounts: input.mounts.clone(), ..Frames::default() },
                     history: settings.history,
                     pass_window: input.window.filter(|_| job.passes(contents)),
-                    ..Options::default()
                 };
                 return Ok(Written::Recording(Box::new(McapSink::new(output, file, options))));
             }

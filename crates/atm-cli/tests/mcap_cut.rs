@@ -21,8 +21,11 @@ fn short() -> Recording {
     recording
 }
 
+/// Times in nanoseconds and sensors of readings.
+type Keys = Vec<(i64, u16)>;
+
 /// The readings of a recording that comes through a pipe, and what was wrong with it.
-fn read(bytes: &[u8]) -> Result<(Vec<(i64, u16)>, Vec<Problem>), String> {
+fn read(bytes: &[u8]) -> Result<(Keys, Vec<Problem>), String> {
     let input =
         Input { reader: Box::new(std::io::Cursor::new(bytes.to_vec())), name: "drive.mcap".into(), length: None };
     let mut log = McapReadings::open("-", input, None, None, Options::default()).map_err(|error| error.to_string())?;
