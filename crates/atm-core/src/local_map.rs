@@ -6,6 +6,7 @@ use crate::{
     pose::Travel,
     scalar::Scalar,
     storage::{Columns, Entry, Storage},
+    sweep::Boxes,
 };
 
 /// More bounds on the local map than H, and readings that take no place in it.
@@ -74,11 +75,13 @@ pub(crate) struct LocalMap<S> {
     oldest: u32,
     /// Where the next arrival goes in the log.
     log_head: usize,
+    /// The sensor whose departed readings were looked through last.
+    turn: usize,
 }
 
 impl<S> LocalMap<S> {
     pub(crate) const fn new(storage: S, keeps_departed: bool) -> Self {
-        Self { storage, keeps_departed, arrivals: 0, oldest: 0, log_head: 0 }
+        Self { storage, keeps_departed, arrivals: 0, oldest: 0, log_head: 0, turn: 0 }
     }
 
     /// Puts a reading into its sensor's next slot, and says which.
@@ -87,7 +90,7 @@ impl<S> LocalMap<S> {
         S: Storage<T>,
     {
         let mut columns = self.storage.columns();
-        let depth = columns.depth();
+        let depth = columns.depth;
         if let Some(place) = columns.log.get_mut(self.log_head) {
             *place = sensor;
         }
@@ -157,42 +160,41 @@ impl<S> LocalMap<S> {
     where
         S: Storage<T>,
     {
-        let columns = self.storage.columns();
-        let sensor = slot.checked_div(columns.depth()).unwrap_or(0);
+        let mut columns = self.storage.columns();
+        let sensor = slot.checked_div(columns.depth).unwrap_or(0);
         if let Some(ring) = columns.rings.get_mut(sensor) {
             ring.present = ring.present.saturating_sub(1);
         }
         if !self.keeps_departed {
-            if let Some(reach) = columns.reach.get_mut(slot) {
-                *reach = T::NAN;
-            }
-            return;
+            return columns.blank(slot);
         }
         if let Some(departure) = columns.departure.get_mut(slot) {
             *departure = self.arrivals;
         }
-        self.forget_unmet();
+        self.forget_unmet(sensor);
+        // One other sensor in turn, so that none is left out for long.
+        self.turn = if self.turn + 1 < self.storage.columns().rings.len() { self.turn + 1 } else { 0 };
+        self.forget_unmet(self.turn);
     }
 
-    /// Stops keeping what left before the oldest reading of the local map arrived: nothing present has met it.
-    fn forget_unmet<T: Scalar>(&mut self)
+    /// Stops keeping what left a sensor's ring before the oldest reading of the local map arrived: nothing present has met
+    /// it.
+    fn forget_unmet<T: Scalar>(&mut self, sensor: usize)
     where
         S: Storage<T>,
     {
         let oldest = self.oldest;
-        let columns = self.storage.columns();
-        let depth = columns.depth();
-        for sensor in 0..columns.rings.len() {
-            while let Some(ring) = columns.rings.get(sensor)
-                && ring.kept > ring.present
-            {
-                let slot = sensor * depth + back(ring.newest, ring.kept - 1, depth);
-                if columns.departed(slot).is_none_or(|departure| is_after(departure, oldest)) {
-                    break;
-                }
-                if let Some(ring) = columns.rings.get_mut(sensor) {
-                    ring.kept -= 1;
-                }
+        let mut columns = self.storage.columns();
+        while let Some(&ring) = columns.rings.get(sensor)
+            && ring.kept > ring.present
+        {
+            let slot = sensor * columns.depth + back(ring.newest, ring.kept - 1, columns.depth);
+            if columns.departed(slot).is_none_or(|departure| is_after(departure, oldest)) {
+                break;
+            }
+            columns.blank(slot);
+            if let Some(ring) = columns.rings.get_mut(sensor) {
+                ring.kept -= 1;
             }
         }
     }
@@ -206,7 +208,7 @@ impl<S> LocalMap<S> {
         let columns = self.storage.columns();
         let sensor = logged(&columns, self.log_head, self.arrivals.wrapping_sub(arrival))?;
         let ring = columns.rings.get(usize::from(sensor))?;
-        let depth = columns.depth();
+        let depth = columns.depth;
         (0..ring.present)
             .map(|age| usize::from(sensor) * depth + back(ring.newest, age, depth))
             .find(|&slot| columns.arrived(slot) == arrival)
@@ -222,10 +224,13 @@ impl<S> LocalMap<S> {
     where
         S: Storage<T>,
     {
-        for ring in self.storage.columns().rings {
+        let columns = self.storage.columns();
+        for ring in columns.rings {
             ring.kept = 0;
             ring.last = None;
         }
+        columns.reach.fill(T::NAN);
+        columns.boxes.fill(Boxes::EMPTY);
     }
 
     /// Brings the log of arrivals in order, the newest at its end, so that it can be made longer.
@@ -261,7 +266,7 @@ impl<S> LocalMap<S> {
 fn front<T: Scalar>(columns: &Columns<'_, T>, sensor: u16) -> Option<usize> {
     let ring = columns.rings.get(usize::from(sensor))?;
     let age = ring.present.checked_sub(1)?;
-    let depth = columns.depth();
+    let depth = columns.depth;
     Some(usize::from(sensor) * depth + back(ring.newest, age, depth))
 }
 
