@@ -85,6 +85,7 @@ impl<S> LocalMap<S> {
     }
 
     /// Puts a reading into its sensor's next slot, and says which.
+    #[inline]
     pub(crate) fn enter<T: Scalar>(&mut self, sensor: u16, entry: Entry<T>) -> usize
     where
         S: Storage<T>,
@@ -112,6 +113,7 @@ impl<S> LocalMap<S> {
     ///
     /// Rules (b) to (d) depend only on what came after a reading, so whoever they send away is the oldest of all; only
     /// rule (a), H later readings of its own sensor, can reach past it.
+    #[inline]
     pub(crate) fn next_leaver<T: Scalar>(&mut self, newcomer: &Newcomer, bounds: &Bounds<T>) -> Option<usize>
     where
         S: Storage<T>,
@@ -135,6 +137,7 @@ impl<S> LocalMap<S> {
     }
 
     /// The oldest reading of the local map: its sensor and slot.
+    #[inline]
     pub(crate) fn oldest_present<T: Scalar>(&mut self) -> Option<(u16, usize)>
     where
         S: Storage<T>,
@@ -156,6 +159,7 @@ impl<S> LocalMap<S> {
     }
 
     /// Takes a sensor's oldest reading out of the local map.
+    #[inline]
     pub(crate) fn depart<T: Scalar>(&mut self, slot: usize)
     where
         S: Storage<T>,
@@ -263,6 +267,7 @@ impl<S> LocalMap<S> {
 }
 
 /// The slot of a sensor's oldest reading in the local map.
+#[inline]
 fn front<T: Scalar>(columns: &Columns<'_, T>, sensor: u16) -> Option<usize> {
     let ring = columns.rings.get(usize::from(sensor))?;
     let age = ring.present.checked_sub(1)?;
@@ -271,12 +276,14 @@ fn front<T: Scalar>(columns: &Columns<'_, T>, sensor: u16) -> Option<usize> {
 }
 
 /// The place `age` before `newest` in a ring of `depth`.
+#[inline]
 pub(crate) fn back(newest: u16, age: u16, depth: usize) -> usize {
     let (newest, age) = (usize::from(newest), usize::from(age));
     if newest >= age { newest - age } else { (newest + depth).saturating_sub(age) }
 }
 
 /// The sensor of the arrival that lies `back` before the log's head.
+#[inline]
 fn logged<T>(columns: &Columns<'_, T>, head: usize, back: u32) -> Option<u16> {
     let back = back as usize;
     let place = if head >= back { head - back } else { (head + columns.log.len()).checked_sub(back)? };

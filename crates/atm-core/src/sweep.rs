@@ -202,7 +202,7 @@ fn transversal<T: Scalar>(block: &Block<'_, T>, probe: &Probe<'_, T>) -> u8 {
 pub struct Instructions(Level);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))]
+#[cfg_attr(not(all(target_arch = "x86_64", any(feature = "std", test))), allow(dead_code))]
 enum Level {
     #[default]
     Baseline,
