@@ -5,6 +5,7 @@ mod columns;
 pub mod csv;
 pub mod echoes;
 pub mod format;
+mod line;
 pub mod output;
 pub mod poses;
 pub mod table;
@@ -93,7 +94,7 @@ pub trait Source {
 /// A file (or standard input) that was opened for reading.
 pub struct Input {
     /// Its bytes.
-    pub reader: Box<dyn io::Read>,
+    pub reader: Box<dyn io::Read + Send>,
     /// Its name in messages.
     pub name: Arc<str>,
     /// Its length in bytes, where that is known beforehand.
