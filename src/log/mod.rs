@@ -1,4 +1,6 @@
 //! Logs in and out, one file a format.
+pub mod ahead;
+pub mod behind;
 mod buffer;
 mod cell;
 mod columns;

@@ -6,8 +6,10 @@ use atm::{
     core::{ArcCrossing, Echo, Kind, MinAngle, TransversalMedian},
     error::{Error, Result},
     log::{
+        ahead::Ahead,
+        behind::Behind,
         csv::{CsvReadings, PoseUse},
-        echoes::TableWriter,
+        echoes::{Line, TableWriter},
         output::{Output, overwrites, same_file},
     },
     pipeline::{self, Defaults, EchoSink, Emit, SensorModel, Settings},
@@ -36,7 +38,9 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     let settings = settings(args, &sensors)?;
     let poses = command::pose_use(&args.log, PoseUse::Needed);
     let format = command::table_format(Some(&rig));
-    let mut source = CsvReadings::new(input, &format, poses, command::empty_cell(&args.log), Arc::clone(&rig))?;
+    let source = CsvReadings::new(input, &format, poses, command::empty_cell(&args.log), Arc::clone(&rig))?;
+    // Somebody may sit behind the output of what is no file.
+    let mut source = Ahead::new(source, length.is_none())?;
     let mut track = command::track(&args.log, Some(&rig))?.map(|(track, _)| track);
     let mut tables = Tables::create(args, &rig)?;
     let counts = args.summary.as_deref().map(Output::create).transpose()?;
@@ -149,49 +153,63 @@ fn write_counts(mut output: Output, summary: &Summary) -> Result<(), Failure> {
 
 /// The tables that are written.
 struct Tables {
-    echoes: TableWriter<Output>,
-    crossings: Option<TableWriter<Output>>,
+    echoes: Table<Echo<f64>>,
+    crossings: Option<Table<ArcCrossing<f64>>>,
     /// Kinds to write; all where it is empty.
     keep: Vec<Kind>,
+}
+
+/// One of them.
+struct Table<R> {
+    name: Arc<str>,
+    /// The file that holds what was written until it is finished.
+    partial: Option<String>,
+    rows: Behind<R, Output>,
+}
+
+impl<R: Line + Send + 'static> Table<R> {
+    fn create(path: &str, begin: impl FnOnce(Output) -> std::io::Result<TableWriter<Output>>) -> Result<Self> {
+        let output = Output::create(path)?;
+        let name = Arc::clone(output.name());
+        let partial = output.partial_path().map(|path| path.display().to_string());
+        let table = begin(output).map_err(|source| Error::Io { file: Arc::clone(&name), source })?;
+        Ok(Self { name, partial, rows: Behind::new(table)? })
+    }
+
+    /// Does something to the rows, and names the table's file in what the system says of it.
+    fn with<T>(&mut self, work: impl FnOnce(&mut Behind<R, Output>) -> std::io::Result<T>) -> Result<T> {
+        work(&mut self.rows).map_err(|source| Error::Io { file: Arc::clone(&self.name), source })
+    }
+
+    fn commit(self) -> Result<()> {
+        match self.rows.into_table().map_err(|source| Error::Io { file: self.name, source })? {
+            Some(table) => table.into_inner().commit(),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Tables {
     fn create(args: &Fuse, rig: &Rig) -> Result<Self> {
         let ids = || rig.sensors().iter().map(|sensor| sensor.id());
-        let named = |file: &Arc<str>| {
-            let file = Arc::clone(file);
-            move |source| Error::Io { file, source }
-        };
-        let output = Output::create(&args.output)?;
-        let file = Arc::clone(output.name());
-        let echoes = TableWriter::echoes(output, ids()).map_err(named(&file))?;
-        let output = args.crossings.as_deref().map(Output::create).transpose()?;
-        let crossings = output.map(|output| {
-            let file = Arc::clone(output.name());
-            TableWriter::crossings(output, ids()).map_err(named(&file))
-        });
-        let crossings = crossings.transpose()?;
+        let echoes = Table::create(&args.output, |output| TableWriter::echoes(output, ids()))?;
+        let crossings = args.crossings.as_deref();
+        let crossings =
+            crossings.map(|path| Table::create(path, |output| TableWriter::crossings(output, ids()))).transpose()?;
         Ok(Self { echoes, crossings, keep: args.keep.clone() })
     }
 
     /// The files that hold what was written until [`Tables::commit`].
     fn partials(&self) -> Vec<String> {
-        let outputs = std::iter::once(&self.echoes).chain(&self.crossings).map(TableWriter::get_ref);
-        outputs.filter_map(Output::partial_path).map(|path| path.display().to_string()).collect()
+        let crossings = self.crossings.as_ref().and_then(|table| table.partial.clone());
+        self.echoes.partial.iter().cloned().chain(crossings).collect()
     }
 
     /// Puts the files under their names.
     fn commit(self) -> Result<()> {
-        if let Some(crossings) = self.crossings {
-            crossings.into_inner().commit()?;
-        }
-        self.echoes.into_inner().commit()
+        self.crossings.map_or(Ok(()), Table::commit)?;
+        self.echoes.commit()
     }
-}
-
-/// Names the table's file in what the system says of it.
-fn name<T>(table: &TableWriter<Output>, result: std::io::Result<T>) -> Result<T> {
-    result.map_err(|error| table.get_ref().error(error))
 }
 
 impl EchoSink for Tables {
@@ -199,8 +217,7 @@ impl EchoSink for Tables {
         if !self.keep.is_empty() && !self.keep.contains(&echo.kind) {
             return Ok(false);
         }
-        let written = self.echoes.echo(echo);
-        name(&self.echoes, written).map(|()| true)
+        self.echoes.with(|rows| rows.push(*echo)).map(|()| true)
     }
 
     fn wants_crossings(&self) -> bool {
@@ -208,22 +225,14 @@ impl EchoSink for Tables {
     }
 
     fn crossings(&mut self, crossings: &[ArcCrossing<f64>]) -> Result<()> {
-        if let Some(table) = &mut self.crossings {
-            for crossing in crossings {
-                let written = table.crossing(crossing);
-                name(table, written)?;
-            }
-        }
-        Ok(())
+        let Some(table) = &mut self.crossings else {
+            return Ok(());
+        };
+        table.with(|rows| crossings.iter().try_for_each(|crossing| rows.push(*crossing)))
     }
 
     fn flush(&mut self) -> Result<()> {
-        let flushed = self.echoes.flush();
-        name(&self.echoes, flushed)?;
-        if let Some(table) = &mut self.crossings {
-            let flushed = table.flush();
-            name(table, flushed)?;
-        }
-        Ok(())
+        self.echoes.with(Behind::flush)?;
+        self.crossings.as_mut().map_or(Ok(()), |table| table.with(Behind::flush))
     }
 }
