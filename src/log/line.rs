@@ -30,20 +30,23 @@ pub(super) fn split(text: &[u8], delimiter: u8, ends: &mut Vec<usize>) -> Option
             return None;
         }
         let line_ends = equal(word, eight(b'\n')) | equal(word, eight(b'\r'));
-        let mut marks = equal(word, delimiters) | line_ends;
-        while marks != 0 {
-            let mark = marks & marks.wrapping_neg();
-            if count == ends.len() {
-                ends.resize(2 * count + 1, 0);
+        let line_end = line_ends & line_ends.wrapping_neg();
+        // Up to the first of them, or all where there is none.
+        let mut marks = (equal(word, delimiters) | line_end) & (line_end | line_end.wrapping_sub(1));
+        if ends.len() < count + 8 {
+            ends.resize(2 * count + 8, 0);
+        }
+        let places = ends.get_mut(count..).unwrap_or_default();
+        count += marks.count_ones() as usize;
+        for place in places {
+            if marks == 0 {
+                break;
             }
-            if let Some(end) = ends.get_mut(count) {
-                *end = index * 8 + mark.trailing_zeros() as usize / 8;
-            }
-            count += 1;
-            if mark & line_ends != 0 {
-                return Some(count);
-            }
-            marks ^= mark;
+            *place = index * 8 + marks.trailing_zeros() as usize / 8;
+            marks &= marks - 1;
+        }
+        if line_end != 0 {
+            return Some(count);
         }
     }
     None
