@@ -36,13 +36,11 @@ pub(super) fn split(text: &[u8], delimiter: u8, ends: &mut Vec<usize>) -> Option
         if ends.len() < count + 8 {
             ends.resize(2 * count + 8, 0);
         }
-        let places = ends.get_mut(count..).unwrap_or_default();
-        count += marks.count_ones() as usize;
-        for place in places {
-            if marks == 0 {
-                break;
+        while marks != 0 {
+            if let Some(end) = ends.get_mut(count) {
+                *end = index * 8 + marks.trailing_zeros() as usize / 8;
             }
-            *place = index * 8 + marks.trailing_zeros() as usize / 8;
+            count += 1;
             marks &= marks - 1;
         }
         if line_end != 0 {
