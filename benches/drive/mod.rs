@@ -32,7 +32,6 @@ pub fn doorway() -> Vec<Reading<f64>> {
 }
 
 /// `sweeps` sweeps of a ring of `sensors`, driven round a room of 8 m by 6 m, an inch between two sweeps.
-#[allow(dead_code)]
 pub fn room(sensors: u16, sweeps: u32) -> Vec<Reading<f64>> {
     let beam = Beam::new(22.5f64.to_radians()).expect("a beam");
     let range_resolution = RangeResolution::new(INCH).expect("a step");
