@@ -10,6 +10,7 @@ pub mod format;
 mod line;
 pub mod output;
 pub mod poses;
+mod record;
 pub mod table;
 
 use std::{fs, io, sync::Arc};

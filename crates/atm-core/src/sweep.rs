@@ -242,7 +242,7 @@ impl Instructions {
 }
 
 /// [`sweep`] in double precision with the given instructions.
-#[cfg(target_arch = "x86_64")]
+#[cfg_attr(not(target_arch = "x86_64"), allow(unused_variables))]
 pub(crate) fn sweep_double(
     instructions: Instructions,
     field: &Field<'_, f64>,
@@ -250,18 +250,9 @@ pub(crate) fn sweep_double(
     probe: &Probe<'_, f64>,
     found: &mut Found,
 ) -> u64 {
-    x86_64::sweep(instructions.0, field, first, probe, found)
-}
-
-/// [`sweep`] in double precision with the given instructions.
-#[cfg(not(target_arch = "x86_64"))]
-pub(crate) fn sweep_double(
-    _: Instructions,
-    field: &Field<'_, f64>,
-    first: usize,
-    probe: &Probe<'_, f64>,
-    found: &mut Found,
-) -> u64 {
+    #[cfg(target_arch = "x86_64")]
+    return x86_64::sweep(instructions.0, field, first, probe, found);
+    #[cfg(not(target_arch = "x86_64"))]
     sweep(field, first, probe, found)
 }
 
