@@ -1,65 +1,63 @@
-//! Readings per second through the fuser: 16 sensors, H = 10, double precision, one core.
+//! Readings per second through the fuser: double precision, one core.
 //!
-//! `cargo bench --bench fusing`. The readings are the doorway sample's.
-use std::{hint::black_box, sync::Arc};
+//! `cargo bench --bench fusing`. The readings are the doorway sample's, and those of a larger room where sensors and H grow.
+
+mod drive;
 
 use atm::{
-    core::{Bounds, Echo, Fuser, Reading, Storage, TransversalMedian},
-    log::{
-        Input, Next, Row, Source,
-        csv::{CsvReadings, PoseUse},
-    },
-    pipeline::{Defaults, readings},
-    rig::{Rig, TableFormat},
+    core::{Fuser, Instructions, Reading},
     storage::{LatestSlots, SettledSlots},
 };
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
-const SENSORS: usize = 16;
-const H: usize = 10;
+use crate::drive::{PAPER, doorway, room, run};
 
-/// The sample's readings, as the pipeline hands them to the fuser.
-fn doorway() -> Vec<Reading<f64>> {
-    let rig = Arc::new(Rig::builtin("nomad200").expect("it is built in"));
-    let sensors = Defaults::default().complete(&rig).expect("the built-in rig is complete");
-    let input = Input::open(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/doorway.csv")).expect("the sample is there");
-    let mut log = CsvReadings::new(input, &TableFormat::default(), PoseUse::Needed, None, rig).expect("it is a log");
-    let (mut row, mut all) = (Row::default(), Vec::new());
-    while log.next_row(&mut row, &mut |problem| panic!("{problem}")).expect("it can be read") == Next::Record {
-        all.extend(readings(&row, row.pose.expect("it has poses"), &sensors));
-    }
-    all
+fn latest(readings: &[Reading<f64>], sensors: u16, history: usize, instructions: Instructions) -> f64 {
+    let storage = LatestSlots::new(sensors.into(), history).expect("a small local map");
+    run(Fuser::latest(PAPER.0, PAPER.1, storage.with_instructions(instructions)), readings)
 }
 
-fn run<S: Storage<f64>>(mut fuser: Fuser<f64, S>, readings: &[Reading<f64>]) -> f64 {
-    let mut sum = 0.0;
-    let mut sink = |echo: &Echo<f64>| sum += echo.position.x;
-    for reading in readings {
-        // Every reading of the sample can be used.
-        let _ = black_box(fuser.push(black_box(reading), &mut sink));
-    }
-    fuser.finish(&mut sink);
-    sum
+fn settled(readings: &[Reading<f64>], sensors: u16, history: usize, instructions: Instructions) -> f64 {
+    let storage = SettledSlots::new(sensors.into(), history).expect("a small local map");
+    run(Fuser::settled(PAPER.0, PAPER.1, storage.with_instructions(instructions)), readings)
 }
 
+/// 16 sensors, H = 10, with each set of instructions that this processor has.
 fn fusing(criterion: &mut Criterion) {
     let readings = doorway();
     let mut group = criterion.benchmark_group("fusing");
     group.throughput(Throughput::Elements(readings.len() as u64));
-    group.bench_function(BenchmarkId::new("latest", "16x10"), |bencher| {
-        bencher.iter(|| {
-            let storage = LatestSlots::new(SENSORS, H).expect("a small local map");
-            run(Fuser::latest(TransversalMedian::PAPER, Bounds::NONE, storage), &readings)
+    for instructions in Instructions::available() {
+        let name = instructions.name();
+        group.bench_function(BenchmarkId::new("latest_16x10", name), |bencher| {
+            bencher.iter(|| latest(&readings, 16, 10, instructions));
         });
-    });
-    group.bench_function(BenchmarkId::new("settled", "16x10"), |bencher| {
-        bencher.iter(|| {
-            let storage = SettledSlots::new(SENSORS, H).expect("a small local map");
-            run(Fuser::settled(TransversalMedian::PAPER, Bounds::NONE, storage), &readings)
+        group.bench_function(BenchmarkId::new("settled_16x10", name), |bencher| {
+            bencher.iter(|| settled(&readings, 16, 10, instructions));
         });
-    });
+    }
     group.finish();
 }
 
-criterion_group!(benches, fusing);
+/// More sensors, and a longer history.
+fn growing(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("growing");
+    for (sensors, history) in [(16, 10), (16, 50), (64, 10), (64, 50)] {
+        let readings = room(sensors, 400);
+        group.throughput(Throughput::Elements(readings.len() as u64));
+        let case = format!("{sensors}x{history}");
+        for instructions in Instructions::available() {
+            let case = format!("{case}/{}", instructions.name());
+            group.bench_function(BenchmarkId::new("latest", &case), |bencher| {
+                bencher.iter(|| latest(&readings, sensors, history, instructions));
+            });
+            group.bench_function(BenchmarkId::new("settled", &case), |bencher| {
+                bencher.iter(|| settled(&readings, sensors, history, instructions));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, fusing, growing);
 criterion_main!(benches);

@@ -138,7 +138,7 @@ pub fn read(
     summary: &mut Summary,
     progress: &mut dyn FnMut(u64),
 ) -> Result<()> {
-    let mut intake = Intake { track, sensors, clock: Clock::default(), epoch: 0, consumer, summary };
+    let mut intake = Intake { track, sensors, clock: Clock::default(), epoch: 0, robot: None, consumer, summary };
     let mut row = Row::default();
     let (mut records, mut known) = (0u64, 0);
     loop {
@@ -171,6 +171,8 @@ struct Intake<'a, C> {
     clock: Clock,
     /// Clock resets so far: poses and readings of the same epoch belong together.
     epoch: u32,
+    /// The last pose, and what it is as a motion: the rows of a sweep have the same.
+    robot: Option<(Pose, Isometry2<f64>)>,
     consumer: &'a mut C,
     summary: &'a mut Summary,
 }
@@ -191,7 +193,11 @@ impl<C: Consumer> Intake<'_, C> {
             self.clock.admit(row.t);
         }
         self.consumer.record(row, pose)?;
-        for reading in readings(row, pose, self.sensors) {
+        let robot = match self.robot {
+            Some((last, robot)) if last == pose => robot,
+            _ => self.robot.insert((pose, isometry(pose))).1,
+        };
+        for reading in readings_at(row, robot, self.sensors) {
             self.consumer.reading(row, &reading, self.summary)?;
         }
         Ok(())
@@ -221,10 +227,22 @@ impl<C: Consumer> Intake<'_, C> {
 /// A record's readings as the fuser takes them, with the robot at `pose`; a sensor beyond `sensors` gives none where the
 /// record does not say itself what it saw.
 pub fn readings<'a>(row: &'a Row, pose: Pose, sensors: &'a [SensorModel]) -> impl Iterator<Item = Reading<f64>> + 'a {
-    let robot = Isometry2::from_parts(
+    readings_at(row, isometry(pose), sensors)
+}
+
+/// From the robot's frame to the fixed one.
+fn isometry(pose: Pose) -> Isometry2<f64> {
+    Isometry2::from_parts(
         Vector2::new(pose.x, pose.y).into(),
         UnitComplex::from_cos_sin_unchecked(libm::cos(pose.yaw), libm::sin(pose.yaw)),
-    );
+    )
+}
+
+fn readings_at<'a>(
+    row: &'a Row,
+    robot: Isometry2<f64>,
+    sensors: &'a [SensorModel],
+) -> impl Iterator<Item = Reading<f64>> + 'a {
     let modelled = move |sensor: u16| {
         let model = sensors.get(usize::from(sensor))?;
         Some(View {

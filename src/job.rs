@@ -15,6 +15,7 @@ use crate::{
     intake::{Defaults, SensorModel},
     log::{
         Input, Source,
+        ahead::Ahead,
         csv::{CsvReadings, EmptyCell, PoseUse},
         format::{Format, MCAP_MAGIC},
         mcap::{
@@ -88,8 +89,8 @@ pub struct LogJob {
 
 /// A log that was opened.
 pub enum OpenLog {
-    /// A table.
-    Csv(Box<CsvReadings<Arc<Rig>>>, Option<AnyTrack>),
+    /// A table, read ahead.
+    Csv(Box<Ahead>, Option<AnyTrack>),
     /// A recording.
     Mcap(Box<McapReadings>),
 }
@@ -206,8 +207,10 @@ impl LogJob {
         let rig = self.rig.as_ref().ok_or_else(|| no_rig(&input.name))?;
         let poses = if track.is_some() { PoseUse::Ignored } else { PoseUse::Needed };
         let format = rig.log().map(|formats| formats.readings.clone()).unwrap_or_default();
+        // Somebody may sit behind the output of what is no file.
+        let live = input.length.is_none();
         let log = CsvReadings::new(input, &format, poses, self.empty, Arc::clone(rig))?;
-        Ok(OpenLog::Csv(Box::new(log), track))
+        Ok(OpenLog::Csv(Box::new(Ahead::new(log, live)?), track))
     }
 }
 

@@ -1,12 +1,17 @@
 //! A local map whose size is chosen at run time.
 
-use atm_core::{Columns, LOG_BLOCKS, Ring, SETTLED_BLOCKS, Scalar, SettledStorage, SnapshotStorage, Storage};
+use atm_core::{
+    BLOCK, Boxes, Columns, Instructions, LOG_BLOCKS, Ring, SETTLED_BLOCKS, Scalar, SettledStorage, SnapshotStorage,
+    Storage,
+};
 use thiserror::Error;
 
-/// Storage on the heap, `B` · H slots for each sensor: grown only where sensors are added.
+/// Storage on the heap, `B` · H slots for each sensor, rounded up to whole blocks: grown only where sensors are added.
 #[derive(Debug, Clone)]
 pub struct Slots<T, const B: usize> {
     history: usize,
+    depth: usize,
+    instructions: Instructions,
     middle_x: Vec<T>,
     middle_y: Vec<T>,
     reach: Vec<T>,
@@ -21,6 +26,7 @@ pub struct Slots<T, const B: usize> {
     departure: Vec<u32>,
     log: Vec<u16>,
     rings: Vec<Ring<T>>,
+    boxes: Vec<Boxes<T>>,
     scratch: Vec<T>,
 }
 
@@ -63,6 +69,8 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
     pub fn new(sensors: usize, history: usize) -> Result<Self, StorageError> {
         let mut slots = Self {
             history,
+            depth: (history * B).next_multiple_of(BLOCK),
+            instructions: Instructions::widest(),
             middle_x: Vec::new(),
             middle_y: Vec::new(),
             reach: Vec::new(),
@@ -77,10 +85,16 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
             departure: Vec::new(),
             log: Vec::new(),
             rings: Vec::new(),
+            boxes: Vec::new(),
             scratch: Vec::new(),
         };
         slots.grow(sensors)?;
         Ok(slots)
+    }
+
+    /// The same with other instructions: what they are changes no echo.
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { instructions, ..self }
     }
 
     /// Makes room for `sensors` in all; those it has keep their place. Fewer than it has change nothing.
@@ -97,13 +111,13 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
         if !(1..=usize::from(u16::MAX)).contains(&sensors) {
             return Err(StorageError::Sensors(sensors));
         }
-        let slots = sensors * history * B;
-        if slots > Self::MAX_SLOTS {
+        if sensors * history * B > Self::MAX_SLOTS {
             return Err(StorageError::TooLarge { sensors, history });
         }
         if sensors <= self.rings.len() {
             return Ok(());
         }
+        let slots = sensors * self.depth;
         for column in [
             &mut self.middle_x,
             &mut self.middle_y,
@@ -122,6 +136,7 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
         }
         self.log.resize(LOG_BLOCKS * sensors * history, 0);
         self.rings.resize(sensors, Ring::EMPTY);
+        self.boxes.resize(slots.div_ceil(BLOCK * BLOCK), Boxes::EMPTY);
         self.scratch.resize(2 * slots, T::ZERO);
         Ok(())
     }
@@ -129,6 +144,8 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
     #[inline]
     fn split(&mut self) -> (Columns<'_, T>, &mut [T]) {
         let columns = Columns {
+            depth: self.depth,
+            instructions: self.instructions,
             middle_x: &mut self.middle_x,
             middle_y: &mut self.middle_y,
             reach: &mut self.reach,
@@ -143,6 +160,7 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
             range_resolution: &mut self.range_resolution,
             log: &mut self.log,
             rings: &mut self.rings,
+            boxes: &mut self.boxes,
         };
         (columns, &mut self.scratch)
     }

@@ -1,6 +1,6 @@
 //! The files that a run writes: tables, recordings, or one of each.
 
-use std::sync::Arc;
+use std::{io, sync::Arc};
 
 use atm_core::{ArcCrossing, Echo, Isometry2, Kind, Reading};
 
@@ -9,7 +9,8 @@ use crate::{
     error::{Error, Result},
     log::{
         Row,
-        echoes::TableWriter,
+        behind::Behind,
+        echoes::{Line, TableWriter},
         format::Format,
         mcap::{
             Tap,
@@ -23,17 +24,16 @@ use crate::{
 
 /// One output.
 enum Written {
-    Table(TableWriter<Output>),
+    Echoes(Table<Echo<f64>>),
+    Crossings(Table<ArcCrossing<f64>>),
     Recording(Box<McapSink<Output>>),
 }
 
 impl Written {
     fn flush(&mut self) -> Result<()> {
         match self {
-            Self::Table(table) => {
-                let flushed = table.flush();
-                name(table, flushed)
-            }
+            Self::Echoes(table) => table.with(Behind::flush),
+            Self::Crossings(table) => table.with(Behind::flush),
             Self::Recording(recording) => recording.flush(),
         }
     }
@@ -41,15 +41,35 @@ impl Written {
     /// Puts the file under its name.
     fn commit(self) -> Result<()> {
         match self {
-            Self::Table(table) => table.into_inner().commit(),
+            Self::Echoes(table) => table.commit(),
+            Self::Crossings(table) => table.commit(),
             Self::Recording(recording) => recording.finish()?.commit(),
         }
     }
 }
 
-/// Names the table's file in what the system says of it.
-fn name<T>(table: &TableWriter<Output>, result: std::io::Result<T>) -> Result<T> {
-    result.map_err(|error| table.get_ref().error(error))
+/// A table, with the name of its file for what the system says of it.
+struct Table<R> {
+    name: Arc<str>,
+    rows: Behind<R, Output>,
+}
+
+impl<R: Line + Send + 'static> Table<R> {
+    fn new(name: Arc<str>, table: io::Result<TableWriter<Output>>) -> Result<Self> {
+        let table = table.map_err(|source| Error::Io { file: Arc::clone(&name), source })?;
+        Ok(Self { name, rows: Behind::new(table)? })
+    }
+
+    fn with<T>(&mut self, work: impl FnOnce(&mut Behind<R, Output>) -> io::Result<T>) -> Result<T> {
+        work(&mut self.rows).map_err(|source| Error::Io { file: Arc::clone(&self.name), source })
+    }
+
+    fn commit(self) -> Result<()> {
+        match self.rows.into_table().map_err(|source| Error::Io { file: self.name, source })? {
+            Some(table) => table.into_inner().commit(),
+            None => Ok(()),
+        }
+    }
 }
 
 /// What the outputs need to know of the log.
@@ -94,11 +114,10 @@ impl Outputs {
                 return Ok(Written::Recording(Box::new(McapSink::new(output, file, options))));
             }
             let ids = input.ids.iter().map(|id| &**id);
-            let table = match contents {
-                Contents::Everything => TableWriter::echoes(output, ids),
-                Contents::Crossings => TableWriter::crossings(output, ids),
-            };
-            table.map(Written::Table).map_err(|source| Error::Io { file, source })
+            match contents {
+                Contents::Everything => Table::new(file, TableWriter::echoes(output, ids)).map(Written::Echoes),
+                Contents::Crossings => Table::new(file, TableWriter::crossings(output, ids)).map(Written::Crossings),
+            }
         };
         let echoes = job.output.as_deref().map(|path| create(path, job.format(), Contents::Everything));
         let echoes = echoes.transpose()?;
@@ -166,7 +185,7 @@ impl Outputs {
     fn recordings(&mut self) -> impl Iterator<Item = &mut McapSink<Output>> {
         self.all().filter_map(|written| match written {
             Written::Recording(recording) => Some(&mut **recording),
-            Written::Table(_) => None,
+            _ => None,
         })
     }
 }
@@ -179,10 +198,8 @@ fn layout(emit: Emit, output: &Output) -> Layout {
 impl EchoSink for Outputs {
     fn sensors(&mut self, ids: &[Arc<str>]) -> Result<()> {
         self.all().try_for_each(|written| match written {
-            Written::Table(table) => {
-                table.set_ids(ids.iter().map(|id| &**id));
-                Ok(())
-            }
+            Written::Echoes(table) => table.with(|rows| rows.set_ids(ids)),
+            Written::Crossings(table) => table.with(|rows| rows.set_ids(ids)),
             Written::Recording(recording) => recording.sensors(ids),
         })
     }
@@ -203,12 +220,9 @@ impl EchoSink for Outputs {
             return Ok(false);
         }
         match &mut self.echoes {
-            None => Ok(false),
-            Some(Written::Table(table)) => {
-                let written = table.echo(echo);
-                name(table, written).map(|()| true)
-            }
+            Some(Written::Echoes(table)) => table.with(|rows| rows.push(*echo)).map(|()| true),
             Some(Written::Recording(recording)) => recording.echo(echo),
+            _ => Ok(false),
         }
     }
 
@@ -218,13 +232,12 @@ impl EchoSink for Outputs {
 
     fn crossings(&mut self, crossings: &[ArcCrossing<f64>]) -> Result<()> {
         self.recordings().try_for_each(|recording| recording.crossings(crossings))?;
-        if let Some(Written::Table(table)) = &mut self.crossings {
-            for crossing in crossings {
-                let written = table.crossing(crossing);
-                name(table, written)?;
+        match &mut self.crossings {
+            Some(Written::Crossings(table)) => {
+                table.with(|rows| crossings.iter().try_for_each(|crossing| rows.push(*crossing)))
             }
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     fn flush(&mut self) -> Result<()> {

@@ -11,7 +11,7 @@ const SIZE: usize = 64 * 1024;
 
 /// A window of fixed size onto a file, which is read once from front to back.
 pub(super) struct Buffer {
-    reader: Box<dyn Read>,
+    reader: Box<dyn Read + Send>,
     name: Arc<str>,
     bytes: Box<[u8]>,
     /// What was read and is not yet used: `bytes[start..end]`.
@@ -20,13 +20,14 @@ pub(super) struct Buffer {
     /// The reader has said that there is no more.
     ended: bool,
     position: u64,
+    fills: u64,
     tabs_to_blanks: bool,
 }
 
 impl Buffer {
-    pub(super) fn new(reader: Box<dyn Read>, name: Arc<str>) -> Self {
+    pub(super) fn new(reader: Box<dyn Read + Send>, name: Arc<str>) -> Self {
         let bytes = vec![0; SIZE].into_boxed_slice();
-        Self { reader, name, bytes, start: 0, end: 0, ended: false, position: 0, tabs_to_blanks: false }
+        Self { reader, name, bytes, start: 0, end: 0, ended: false, position: 0, fills: 0, tabs_to_blanks: false }
     }
 
     /// The file's name in messages.
@@ -53,6 +54,19 @@ impl Buffer {
     #[inline]
     pub(super) fn position(&self) -> u64 {
         self.position
+    }
+
+    /// How many times more was asked for: what [`Buffer::rest`] holds changes with it.
+    #[inline]
+    pub(super) fn fills(&self) -> u64 {
+        self.fills
+    }
+
+    /// The last `count` bytes used: there until more is read.
+    #[inline]
+    pub(super) fn used(&self, count: usize) -> &[u8] {
+        let from = self.start.saturating_sub(count);
+        &self.bytes[from..self.start]
     }
 
     /// Whether the end of the file was read.
@@ -87,6 +101,7 @@ impl Buffer {
         self.bytes.copy_within(self.start..self.end, 0);
         self.end -= self.start;
         self.start = 0;
+        self.fills += 1;
         loop {
             match self.reader.read(&mut self.bytes[self.end..]) {
                 Ok(count) => {

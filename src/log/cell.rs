@@ -57,6 +57,9 @@ pub(super) fn shorten(cell: &[u8]) -> String {
 /// Reads a number. NaN and ±Inf only where they are spelled: digits that overflow are no number.
 #[inline]
 pub(super) fn number(cell: &[u8]) -> Option<f64> {
+    if let Some(value) = short_number(cell) {
+        return Some(value);
+    }
     let value: f64 = fast_float2::parse(cell).ok()?;
     if value.is_finite() {
         return Some(value);
@@ -64,6 +67,39 @@ pub(super) fn number(cell: &[u8]) -> Option<f64> {
     // `nan` and `inf` in any spelling have an n, digits have none.
     memchr2(b'n', b'N', cell)?;
     Some(if value.is_nan() { f64::NAN } else { value })
+}
+
+/// Powers of ten that are exact in an `f64`, as far as they are needed.
+const TENS: [f64; MOST_DIGITS] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
+/// Digits that any `f64` holds.
+const MOST_DIGITS: usize = 15;
+
+/// The ordinary case of [`number`]: a sign or none, and up to 15 digits with a point or none among them. Both the digits and
+/// the power of ten are exact then, so that their quotient is rounded once (W. D. Clinger, *How to read floating point
+/// numbers accurately*, PLDI 1990).
+#[inline]
+fn short_number(cell: &[u8]) -> Option<f64> {
+    let (negative, text) = match cell {
+        [b'-', text @ ..] => (true, text),
+        text => (false, text),
+    };
+    if text.len() > MOST_DIGITS + 1 {
+        return None;
+    }
+    let (mut digits, mut point) = (0u64, None);
+    for (at, &byte) in text.iter().enumerate() {
+        match byte {
+            b'0'..=b'9' => digits = digits * 10 + u64::from(byte - b'0'),
+            b'.' if point.is_none() => point = Some(at),
+            _ => return None,
+        }
+    }
+    let magnitude = match point {
+        None if (1..=MOST_DIGITS).contains(&text.len()) => digits as f64,
+        Some(at) if text.len() > 1 => digits as f64 / TENS.get(text.len() - 1 - at)?,
+        _ => return None,
+    };
+    Some(if negative { -magnitude } else { magnitude })
 }
 
 /// A number in SI units. What overflows by its unit is no number either.
@@ -111,6 +147,35 @@ impl PoseCells {
             y: coordinate(record, self.y, "y", self.length)?,
             yaw: coordinate(record, self.yaw, "yaw", self.angle)?,
         })
+    }
+}
+
+/// The last pose that was read, with its text: the readings of a sweep have the same.
+#[derive(Debug, Default)]
+pub(super) struct LastPose {
+    text: Vec<u8>,
+    pose: Option<Pose>,
+}
+
+impl LastPose {
+    /// [`PoseCells::read`], where the text is another one.
+    #[inline]
+    pub(super) fn read(&mut self, cells: &PoseCells, record: Record<'_>) -> Result<Pose, Fault> {
+        let (first, last) = (cells.x.min(cells.y).min(cells.yaw), cells.x.max(cells.y).max(cells.yaw));
+        let text = record.span(first, last).filter(|_| last - first == 2);
+        if let (Some(pose), Some(text)) = (self.pose, text)
+            && text == self.text
+        {
+            return Ok(pose);
+        }
+        self.pose = None;
+        let pose = cells.read(record)?;
+        if let Some(text) = text {
+            self.text.clear();
+            self.text.extend_from_slice(text);
+            self.pose = Some(pose);
+        }
+        Ok(pose)
     }
 }
 

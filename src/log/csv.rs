@@ -8,7 +8,7 @@ use std::{
 
 use super::{
     Input, Next, Row, Source,
-    cell::{Fault, PoseCells, check_width, number, scaled},
+    cell::{Fault, LastPose, PoseCells, check_width, number, scaled},
     columns::{Columns, list},
     table::{Record, Table},
 };
@@ -124,6 +124,9 @@ pub struct CsvReadings<N> {
     width: usize,
     empty: EmptyCell,
     names: N,
+    /// Where the next record's sensor is looked for first: sensors mostly take turns.
+    turn: usize,
+    last_pose: LastPose,
 }
 
 impl<N: SensorNames> CsvReadings<N> {
@@ -162,7 +165,19 @@ impl<N: SensorNames> CsvReadings<N> {
         let width = (1 + time.max(ranges)).max(pose.map_or(0, |pose| pose.width()));
         let default = if matches!(layout, Layout::Long { .. }) { EmptyCell::NoEcho } else { EmptyCell::Skip };
         let empty = empty.unwrap_or(default);
-        Ok(Self { table, format: format.clone(), columns, time, pose, layout, width, empty, names })
+        Ok(Self {
+            table,
+            format: format.clone(),
+            columns,
+            time,
+            pose,
+            layout,
+            width,
+            empty,
+            names,
+            turn: 0,
+            last_pose: LastPose::default(),
+        })
     }
 
     /// The sensors' names.
@@ -181,13 +196,13 @@ impl<N: SensorNames> CsvReadings<N> {
         let time = record.get(self.time).unwrap_or_default();
         row.t = stamp::parse(time, self.format.time_shift).ok_or_else(|| Fault::cell(Reason::BadNumber, "t", time))?;
         row.log_time = row.t;
-        row.pose = self.pose.as_ref().map(|pose| pose.read(record)).transpose()?;
+        row.pose = self.pose.as_ref().map(|cells| self.last_pose.read(cells, record)).transpose()?;
         match &self.layout {
             Layout::Long { sensor, range } => {
                 let range = self.range(record, *range)?;
                 // Looked up last: a record with a bad number makes no sensor known.
                 let id = record.get(*sensor).unwrap_or_default();
-                let index = std::str::from_utf8(id).ok().and_then(|id| self.names.index(id));
+                let index = index_of(id, &mut self.names, &mut self.turn);
                 let index = index.ok_or_else(|| Fault::cell(Reason::UnknownSensor, "sensor", id))?;
                 row.add(index, range);
             }
@@ -219,6 +234,18 @@ impl<N: SensorNames> CsvReadings<N> {
             None => Err(Fault::cell(Reason::BadNumber, self.columns.name(column), cell)),
         }
     }
+}
+
+/// The index of the sensor named in a cell; `turn` says where to look first, and is left at the one after it.
+#[inline]
+fn index_of(cell: &[u8], names: &mut impl SensorNames, turn: &mut usize) -> Option<u16> {
+    let index = match names.ids().get(*turn) {
+        Some(id) if id.as_bytes() == cell => u16::try_from(*turn).ok(),
+        _ => std::str::from_utf8(cell).ok().and_then(|id| names.index(id)),
+    }?;
+    let next = usize::from(index) + 1;
+    *turn = if next < names.ids().len() { next } else { 0 };
+    Some(index)
 }
 
 impl Row {

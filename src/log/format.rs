@@ -40,7 +40,7 @@ impl Input {
             .read_to_end(&mut start)
             .map_err(|source| Error::Io { file: self.name.clone(), source })?;
         let format = if start == MCAP_MAGIC { Format::Mcap } else { Format::Csv };
-        self.reader = Box::new(Cursor::new(start).chain(reader)) as Box<dyn io::Read>;
+        self.reader = Box::new(Cursor::new(start).chain(reader)) as Box<dyn io::Read + Send>;
         Ok((format, self))
     }
 }

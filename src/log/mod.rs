@@ -1,4 +1,6 @@
 //! Logs in and out, one file a format.
+pub mod ahead;
+pub mod behind;
 mod buffer;
 mod cell;
 mod columns;
@@ -8,9 +10,11 @@ pub mod csv;
 pub mod echo_table;
 pub mod echoes;
 pub mod format;
+mod line;
 pub mod mcap;
 pub mod output;
 pub mod poses;
+mod record;
 pub mod table;
 pub mod truth;
 pub mod writer;
@@ -115,7 +119,7 @@ pub trait Source {
 /// A file (or standard input) that was opened for reading.
 pub struct Input {
     /// Its bytes.
-    pub reader: Box<dyn io::Read>,
+    pub reader: Box<dyn io::Read + Send>,
     /// Its name in messages.
     pub name: Arc<str>,
     /// Its length in bytes, where that is known beforehand.

@@ -1,13 +1,14 @@
 //! Text tables as a stream of records, in bounded memory.
 //!
-//! Quotes are read as `csv-core` reads them; comments and blank lines are passed over here, so that each record's line
+//! Quotes are read as `csv-core` reads them, and lines without a quote stay where they are; comments and blank lines are passed over here, so that each record's line
 //! and byte are those it really begins at.
-use std::{io::Read, sync::Arc};
+use std::{cell::Cell, io::Read, sync::Arc};
 
 use csv_core::{ReadRecordResult, ReaderBuilder};
-use memchr::{memchr, memchr_iter, memchr2};
+use memchr::{memchr, memchr_iter, memchr2, memrchr2};
 
-use super::{Next, buffer::Buffer};
+pub use super::record::Record;
+use super::{Next, buffer::Buffer, line};
 use crate::error::{Error, Place, Problem, Reason, Result};
 
 /// Longest record that is read, in bytes, its line end aside.
@@ -19,41 +20,6 @@ pub const MAX_FIELDS: usize = 131_072;
 const MARK: usize = 4;
 /// Delimiters that are looked for in a header.
 const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
-
-/// One record: its fields, trimmed of ASCII blanks.
-#[derive(Debug, Clone, Copy)]
-pub struct Record<'a> {
-    bytes: &'a [u8],
-    ends: &'a [usize],
-}
-
-impl<'a> Record<'a> {
-    /// Number of fields; 0 only before the first record.
-    pub fn len(&self) -> usize {
-        self.ends.len()
-    }
-
-    /// Whether no record was read yet.
-    pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
-    }
-
-    /// The field of this index, from 0.
-    #[inline]
-    pub fn get(&self, index: usize) -> Option<&'a [u8]> {
-        let end = *self.ends.get(index)?;
-        let start = match index.checked_sub(1) {
-            Some(before) => *self.ends.get(before)?,
-            None => 0,
-        };
-        Some(self.bytes.get(start..end)?.trim_ascii())
-    }
-
-    /// The fields in order.
-    pub fn fields(self) -> impl Iterator<Item = &'a [u8]> {
-        (0..self.len()).filter_map(move |index| self.get(index))
-    }
-}
 
 /// How the reading of one record ended.
 enum Outcome {
@@ -70,13 +36,18 @@ pub struct Table {
     after_return: bool,
     /// The delimiter is a run of blanks.
     blanks: bool,
+    delimiter: u8,
     parser: csv_core::Reader,
-    /// The last record: its fields one after the other, and where each ends.
+    /// The last record lies in the buffer, and is so many bytes long with the end of its line.
+    in_place: Option<usize>,
+    /// Otherwise: its fields one after the other. And where each ends.
     fields: Vec<u8>,
     ends: Vec<usize>,
     field_count: usize,
     record_line: u64,
     record_byte: u64,
+    /// After so many reads of the buffer, the file's bytes up to here belong to complete records: see [`Table::drained`].
+    complete: Cell<(u64, u64)>,
 }
 
 impl Table {
@@ -84,18 +55,21 @@ impl Table {
     ///
     /// Reads the first bytes. A byte-order mark is passed over. Errors where nothing can be read, where the file is empty, and
     /// where it is UTF-16.
-    pub fn new(reader: Box<dyn Read>, name: Arc<str>) -> Result<Self> {
+    pub fn new(reader: Box<dyn Read + Send>, name: Arc<str>) -> Result<Self> {
         let mut table = Self {
             buffer: Buffer::new(reader, name),
             line: 1,
             after_return: false,
             blanks: false,
+            delimiter: b',',
             parser: parser(b','),
+            in_place: None,
             fields: vec![0; 1024],
             ends: vec![0; 64],
             field_count: 0,
             record_line: 1,
             record_byte: 0,
+            complete: Cell::new((0, 0)),
         };
         table.check_encoding()?;
         Ok(table)
@@ -111,6 +85,7 @@ impl Table {
             None => delimiter_of(self.first_line()?),
         };
         self.parser = parser(delimiter);
+        self.delimiter = delimiter;
         self.blanks = delimiter == b' ';
         if self.blanks {
             self.buffer.turn_tabs_to_blanks();
@@ -142,6 +117,12 @@ impl Table {
             }
             self.record_line = self.line;
             self.record_byte = self.buffer.position();
+            if self.read_line() {
+                if self.is_blank() {
+                    continue;
+                }
+                return Ok(Next::Record);
+            }
             match self.read_record()? {
                 Outcome::Complete => {}
                 Outcome::TooLong => {
@@ -152,18 +133,25 @@ impl Table {
             if self.blanks {
                 self.drop_empty_fields();
             }
-            // A line of nothing but blanks is a blank line.
-            let blank = self.field_count < 2 && self.record().get(0).is_none_or(<[u8]>::is_empty);
-            if !blank {
+            if !self.is_blank() {
                 return Ok(Next::Record);
             }
         }
     }
 
+    /// A line of nothing but blanks is a blank line.
+    fn is_blank(&self) -> bool {
+        self.field_count < 2 && self.record().get(0).is_none_or(<[u8]>::is_empty)
+    }
+
     /// The record that was read last.
     #[inline]
     pub fn record(&self) -> Record<'_> {
-        Record { bytes: &self.fields, ends: self.ends.get(..self.field_count).unwrap_or_default() }
+        let ends = self.ends.get(..self.field_count).unwrap_or_default();
+        match self.in_place {
+            Some(length) => Record { bytes: self.buffer.used(length), ends, gap: 1 },
+            None => Record { bytes: &self.fields, ends, gap: 0 },
+        }
     }
 
     /// Where the last record begins.
@@ -188,10 +176,26 @@ impl Table {
 
     /// Whether the next record has to be waited for: what was read from the file so far holds no complete one.
     pub fn drained(&self) -> bool {
-        let mut rest = self.buffer.rest();
         if self.buffer.ended() {
-            return rest.is_empty();
+            return self.buffer.rest().is_empty();
         }
+        // Asked after every record, but searched once for each read of the buffer where nothing is quoted or left out.
+        let (fills, end) = self.complete.get();
+        if fills == self.buffer.fills() {
+            return self.buffer.position() >= end;
+        }
+        let rest = self.buffer.rest();
+        if memchr2(b'"', b'#', rest).is_some() {
+            return self.holds_no_record(rest);
+        }
+        let lines = rest.get(..memrchr2(b'\n', b'\r', rest).unwrap_or(0)).unwrap_or_default();
+        let end = self.buffer.position() + lines.trim_ascii_end().len() as u64;
+        self.complete.set((self.buffer.fills(), end));
+        self.buffer.position() >= end
+    }
+
+    /// Whether there is no complete record in `rest`, line by line.
+    fn holds_no_record(&self, mut rest: &[u8]) -> bool {
         // After an odd number of quotes, a line end stands within quotes.
         let (mut quotes, mut blank) = (0, true);
         while let Some(at) = memchr2(b'\n', b'\r', rest) {
@@ -276,7 +280,28 @@ impl Table {
         Ok(())
     }
 
+    /// Reads a record where it lies, if it is an ordinary line that is complete in the buffer.
+    #[inline]
+    fn read_line(&mut self) -> bool {
+        // The first record is the parser's, which knows of byte-order marks.
+        if self.blanks || self.field_count == 0 {
+            return false;
+        }
+        let rest = self.buffer.rest();
+        let Some(count) = line::split(rest, self.delimiter, &mut self.ends) else {
+            return false;
+        };
+        let end = count.checked_sub(1).and_then(|last| self.ends.get(last)).copied().unwrap_or(0);
+        self.after_return = rest.get(end) == Some(&b'\r');
+        self.line += 1;
+        self.field_count = count;
+        self.in_place = Some(end + 1);
+        self.buffer.use_up(end + 1);
+        true
+    }
+
     fn read_record(&mut self) -> Result<Outcome> {
+        self.in_place = None;
         let (mut used, mut field_bytes, mut field_count) = (0, 0, 0);
         self.parser.set_line(self.line);
         loop {

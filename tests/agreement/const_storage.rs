@@ -1,6 +1,7 @@
-//! Arrays of const size and vectors of run-time size hold the same local map: the same bits come out of either.
+//! Arrays of const size and vectors of run-time size hold the same local map: the same bits come out of either, whatever
+//! instructions the pass over it uses.
 
-use atm::core::{Arrays, Fuser, LatestArrays, SETTLED_BLOCKS, SnapshotStorage, Storage};
+use atm::core::{Arrays, Fuser, Instructions, LatestArrays, SETTLED_BLOCKS, SnapshotStorage, Storage};
 use atm::storage::{LatestSlots, SettledSlots};
 
 use crate::{
@@ -29,6 +30,10 @@ fn same_bits<T: Float, const S: usize, const H: usize>() {
         let large = || SettledSlots::<T>::new(S, H).expect("small");
 
         let expected = latest(&log, small());
+        for instructions in Instructions::available() {
+            let with = latest(&log, small().with_instructions(instructions));
+            assert!(with == expected, "{}, seed {seed}", instructions.name());
+        }
         assert!(latest(&log, Arrays::<T, S, H, 1>::new()) == expected, "arrays, seed {seed}");
         assert!(latest(&log, Arrays::<T, S, H, SETTLED_BLOCKS>::new()) == expected, "large arrays, seed {seed}");
         assert!(latest(&log, large()) == expected, "large slots, seed {seed}");
@@ -42,6 +47,11 @@ fn same_bits<T: Float, const S: usize, const H: usize>() {
         let on_slots = run(&log, &mut slots, |fuser, recorder| fuser.snapshot(recorder)).bits();
         let on_arrays = run(&log, &mut arrays, |fuser, recorder| fuser.snapshot(recorder)).bits();
         assert!(on_arrays == on_slots, "settled arrays, seed {seed}");
+        for instructions in Instructions::available() {
+            let mut with = Fuser::settled(estimator, bounds, large().with_instructions(instructions));
+            let with = run(&log, &mut with, |fuser, recorder| fuser.snapshot(recorder)).bits();
+            assert!(with == on_slots, "settled, {}, seed {seed}", instructions.name());
+        }
     }
 }
 
@@ -52,6 +62,8 @@ fn const_storage_gives_the_same_bits_in_double_precision() {
     same_bits::<f64, 3, 2>();
     same_bits::<f64, 5, 4>();
     same_bits::<f64, 8, 10>();
+    // More slots than one sweep goes over.
+    same_bits::<f64, 4, 50>();
 }
 
 #[test]

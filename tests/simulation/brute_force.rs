@@ -91,8 +91,9 @@ impl<'a> Second<'a> {
                 let (a, b) = (one.1 - one.0, other.1 - other.0);
                 let joined =
                     [one.0, one.1].iter().any(|end| (end - other.0).norm() < 1e-9 || (end - other.1).norm() < 1e-9);
-                let near_end = !joined && [one.0, one.1].iter().any(|end| off_wall(other.0, other.1, *end) < 0.01)
-                    || !joined && [other.0, other.1].iter().any(|end| off_wall(one.0, one.1, *end) < 0.01);
+                let near_end = !joined
+                    && ([one.0, one.1].iter().any(|end| off_wall(other.0, other.1, *end) < 0.01)
+                        || [other.0, other.1].iter().any(|end| off_wall(one.0, one.1, *end) < 0.01));
                 let square = (a.angle(&b) - FRAC_PI_2).abs().to_degrees() < degrees;
                 near_end || square && !joined && cut(one.0, one.1, other.0, other.1)
             })

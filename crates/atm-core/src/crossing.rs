@@ -39,6 +39,11 @@ impl<T: Scalar> MinAngle<T> {
         self.cot_half
     }
 
+    #[cfg(target_arch = "x86_64")]
+    pub(crate) const fn cos(&self) -> T {
+        self.cos
+    }
+
     /// The angle, in radians.
     pub fn radians(&self) -> T {
         T::TWO * T::ONE.arc_tangent_2(self.cot_half)

@@ -211,7 +211,7 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
     /// Whether the reading takes no slot, and why.
     fn skip(&mut self, reading: &Reading<T>) -> Option<Arrival> {
         let columns = self.map.storage.columns();
-        let depth = columns.depth();
+        let depth = columns.depth;
         let ring = columns.rings.get_mut(usize::from(reading.sensor))?;
         let range = reading.range.echo().unwrap_or(T::NAN);
         // Total order: all readings without echo are the same NaN, and equal.
@@ -240,7 +240,7 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         let columns = self.map.storage.columns();
         let at = |column: &[T]| column.get(slot).copied().unwrap_or(T::NAN);
         let (field_of_view, resolution) = (at(columns.field_of_view), at(columns.range_resolution));
-        let sensor = slot.checked_div(columns.depth()).unwrap_or(0) as u16;
+        let sensor = slot.checked_div(columns.depth).unwrap_or(0) as u16;
         let (arc, t) = (columns.arc(slot), columns.time(slot));
         // A reading without echo has no arc, and nothing to report.
         if let (true, Ok(range_resolution)) = (arc.radius > T::ZERO, RangeResolution::new(resolution)) {
@@ -259,7 +259,7 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
                         t: arc.t,
                         sensor: arc.sensor,
                         t_other: columns.time(other),
-                        sensor_other: other.checked_div(columns.depth()).unwrap_or(0) as u16,
+                        sensor_other: other.checked_div(columns.depth).unwrap_or(0) as u16,
                         position: arc.arc.sensor() + crossing.offset(),
                         bearing: crossing.bearing(),
                         angle: crossing.angle(),

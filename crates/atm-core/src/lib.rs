@@ -57,6 +57,9 @@
 // `!(x <= limit)` is how a guard is written here: it holds for NaN too.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
 mod arc;
 mod crossing;
 mod echo;
@@ -72,6 +75,7 @@ mod scalar;
 mod sensor;
 pub mod significance;
 mod storage;
+mod sweep;
 
 pub use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 
@@ -91,4 +95,5 @@ pub use crate::{
     storage::{
         Arrays, Columns, LOG_BLOCKS, LatestArrays, Ring, SETTLED_BLOCKS, SettledStorage, SnapshotStorage, Storage,
     },
+    sweep::{BLOCK, Boxes, Instructions},
 };

@@ -6,6 +6,7 @@ use crate::{
     pose::Travel,
     scalar::Scalar,
     storage::{Columns, Entry, Storage},
+    sweep::Boxes,
 };
 
 /// More bounds on the local map than H, and readings that take no place in it.
@@ -74,20 +75,23 @@ pub(crate) struct LocalMap<S> {
     oldest: u32,
     /// Where the next arrival goes in the log.
     log_head: usize,
+    /// The sensor whose departed readings were looked through last.
+    turn: usize,
 }
 
 impl<S> LocalMap<S> {
     pub(crate) const fn new(storage: S, keeps_departed: bool) -> Self {
-        Self { storage, keeps_departed, arrivals: 0, oldest: 0, log_head: 0 }
+        Self { storage, keeps_departed, arrivals: 0, oldest: 0, log_head: 0, turn: 0 }
     }
 
     /// Puts a reading into its sensor's next slot, and says which.
+    #[inline]
     pub(crate) fn enter<T: Scalar>(&mut self, sensor: u16, entry: Entry<T>) -> usize
     where
         S: Storage<T>,
     {
         let mut columns = self.storage.columns();
-        let depth = columns.depth();
+        let depth = columns.depth;
         if let Some(place) = columns.log.get_mut(self.log_head) {
             *place = sensor;
         }
@@ -109,6 +113,7 @@ impl<S> LocalMap<S> {
     ///
     /// Rules (b) to (d) depend only on what came after a reading, so whoever they send away is the oldest of all; only
     /// rule (a), H later readings of its own sensor, can reach past it.
+    #[inline]
     pub(crate) fn next_leaver<T: Scalar>(&mut self, newcomer: &Newcomer, bounds: &Bounds<T>) -> Option<usize>
     where
         S: Storage<T>,
@@ -132,6 +137,7 @@ impl<S> LocalMap<S> {
     }
 
     /// The oldest reading of the local map: its sensor and slot.
+    #[inline]
     pub(crate) fn oldest_present<T: Scalar>(&mut self) -> Option<(u16, usize)>
     where
         S: Storage<T>,
@@ -153,46 +159,46 @@ impl<S> LocalMap<S> {
     }
 
     /// Takes a sensor's oldest reading out of the local map.
+    #[inline]
     pub(crate) fn depart<T: Scalar>(&mut self, slot: usize)
     where
         S: Storage<T>,
     {
-        let columns = self.storage.columns();
-        let sensor = slot.checked_div(columns.depth()).unwrap_or(0);
+        let mut columns = self.storage.columns();
+        let sensor = slot.checked_div(columns.depth).unwrap_or(0);
         if let Some(ring) = columns.rings.get_mut(sensor) {
             ring.present = ring.present.saturating_sub(1);
         }
         if !self.keeps_departed {
-            if let Some(reach) = columns.reach.get_mut(slot) {
-                *reach = T::NAN;
-            }
-            return;
+            return columns.blank(slot);
         }
         if let Some(departure) = columns.departure.get_mut(slot) {
             *departure = self.arrivals;
         }
-        self.forget_unmet();
+        self.forget_unmet(sensor);
+        // One other sensor in turn, so that none is left out for long.
+        self.turn = if self.turn + 1 < self.storage.columns().rings.len() { self.turn + 1 } else { 0 };
+        self.forget_unmet(self.turn);
     }
 
-    /// Stops keeping what left before the oldest reading of the local map arrived: nothing present has met it.
-    fn forget_unmet<T: Scalar>(&mut self)
+    /// Stops keeping what left a sensor's ring before the oldest reading of the local map arrived: nothing present has met
+    /// it.
+    fn forget_unmet<T: Scalar>(&mut self, sensor: usize)
     where
         S: Storage<T>,
     {
         let oldest = self.oldest;
-        let columns = self.storage.columns();
-        let depth = columns.depth();
-        for sensor in 0..columns.rings.len() {
-            while let Some(ring) = columns.rings.get(sensor)
-                && ring.kept > ring.present
-            {
-                let slot = sensor * depth + back(ring.newest, ring.kept - 1, depth);
-                if columns.departed(slot).is_none_or(|departure| is_after(departure, oldest)) {
-                    break;
-                }
-                if let Some(ring) = columns.rings.get_mut(sensor) {
-                    ring.kept -= 1;
-                }
+        let mut columns = self.storage.columns();
+        while let Some(&ring) = columns.rings.get(sensor)
+            && ring.kept > ring.present
+        {
+            let slot = sensor * columns.depth + back(ring.newest, ring.kept - 1, columns.depth);
+            if columns.departed(slot).is_none_or(|departure| is_after(departure, oldest)) {
+                break;
+            }
+            columns.blank(slot);
+            if let Some(ring) = columns.rings.get_mut(sensor) {
+                ring.kept -= 1;
             }
         }
     }
@@ -206,7 +212,7 @@ impl<S> LocalMap<S> {
         let columns = self.storage.columns();
         let sensor = logged(&columns, self.log_head, self.arrivals.wrapping_sub(arrival))?;
         let ring = columns.rings.get(usize::from(sensor))?;
-        let depth = columns.depth();
+        let depth = columns.depth;
         (0..ring.present)
             .map(|age| usize::from(sensor) * depth + back(ring.newest, age, depth))
             .find(|&slot| columns.arrived(slot) == arrival)
@@ -222,10 +228,13 @@ impl<S> LocalMap<S> {
     where
         S: Storage<T>,
     {
-        for ring in self.storage.columns().rings {
+        let columns = self.storage.columns();
+        for ring in columns.rings {
             ring.kept = 0;
             ring.last = None;
         }
+        columns.reach.fill(T::NAN);
+        columns.boxes.fill(Boxes::EMPTY);
     }
 
     /// Brings the log of arrivals in order, the newest at its end, so that it can be made longer.
@@ -258,20 +267,23 @@ impl<S> LocalMap<S> {
 }
 
 /// The slot of a sensor's oldest reading in the local map.
+#[inline]
 fn front<T: Scalar>(columns: &Columns<'_, T>, sensor: u16) -> Option<usize> {
     let ring = columns.rings.get(usize::from(sensor))?;
     let age = ring.present.checked_sub(1)?;
-    let depth = columns.depth();
+    let depth = columns.depth;
     Some(usize::from(sensor) * depth + back(ring.newest, age, depth))
 }
 
 /// The place `age` before `newest` in a ring of `depth`.
+#[inline]
 pub(crate) fn back(newest: u16, age: u16, depth: usize) -> usize {
     let (newest, age) = (usize::from(newest), usize::from(age));
     if newest >= age { newest - age } else { (newest + depth).saturating_sub(age) }
 }
 
 /// The sensor of the arrival that lies `back` before the log's head.
+#[inline]
 fn logged<T>(columns: &Columns<'_, T>, head: usize, back: u32) -> Option<u16> {
     let back = back as usize;
     let place = if head >= back { head - back } else { (head + columns.log.len()).checked_sub(back)? };

@@ -45,6 +45,10 @@ impl<T: Scalar> Odometer<T> {
     pub(crate) fn advance(&mut self, position: Point2<T>) -> Travel {
         if let Some(last) = self.last.replace(position) {
             let step = position - last;
+            // The sensors of a ring fire together: nothing to add.
+            if step.x == T::ZERO && step.y == T::ZERO {
+                return Travel(self.travel);
+            }
             let length = (step.x * step.x + step.y * step.y).square_root();
             let micrometres = length * T::MICROMETRES + self.fraction;
             let whole = micrometres.round_down();

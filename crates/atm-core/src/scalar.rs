@@ -4,10 +4,48 @@ use core::cmp::Ordering;
 
 use nalgebra::RealField;
 
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
+use crate::sweep::{Field, Found, Instructions, Probe, sweep, sweep_double};
+
+/// What nobody else implements, so that nobody else can add a [`Scalar`].
+pub(crate) mod sealed {
+    use super::*;
+
+    pub trait Sealed: Sized {
+        /// Which arcs may cross: [`crate::sweep::sweep`] in the fastest way there is.
+        fn sweep(
+            _: Instructions,
+            field: &Field<'_, Self>,
+            first: usize,
+            probe: &Probe<'_, Self>,
+            found: &mut Found,
+        ) -> u64
+        where
+            Self: Scalar;
+    }
+    impl Sealed for f32 {
+        #[inline]
+        fn sweep(
+            _: Instructions,
+            field: &Field<'_, f32>,
+            first: usize,
+            probe: &Probe<'_, f32>,
+            found: &mut Found,
+        ) -> u64 {
+            sweep(field, first, probe, found)
+        }
+    }
+    impl Sealed for f64 {
+        #[inline]
+        fn sweep(
+            instructions: Instructions,
+            field: &Field<'_, f64>,
+            first: usize,
+            probe: &Probe<'_, f64>,
+            found: &mut Found,
+        ) -> u64 {
+            sweep_double(instructions, field, first, probe, found)
+        }
+    }
 }
 
 /// `f32` or `f64`.
@@ -32,6 +70,8 @@ pub trait Scalar: RealField + Copy + sealed::Sealed {
     const NAN: Self;
     /// +∞.
     const INFINITY: Self;
+    /// −∞.
+    const NEGATIVE_INFINITY: Self;
     /// cos 30°.
     const COS_30_DEG: Self;
     /// cot 15° = 2 + √3.
@@ -84,6 +124,7 @@ macro_rules! scalar {
             const PI: Self = core::$float::consts::PI;
             const NAN: Self = $float::NAN;
             const INFINITY: Self = $float::INFINITY;
+            const NEGATIVE_INFINITY: Self = $float::NEG_INFINITY;
             // The next two are rounded once from more digits than either type holds.
             #[allow(clippy::excessive_precision)]
             const COS_30_DEG: Self = 0.866_025_403_784_438_646_76;

@@ -1,5 +1,7 @@
 //! Where the local map lives: arrays of const size on a microcontroller, anything else on a host.
 
+use core::ops::Range;
+
 use nalgebra::{Point2, Vector2};
 
 use crate::{
@@ -7,6 +9,7 @@ use crate::{
     pose::Travel,
     scalar::Scalar,
     sensor::{Beam, RangeResolution},
+    sweep::{BLOCK, Boxes, Field, Instructions},
 };
 
 /// Memory for a local map: columns of slots, `D` of them for each sensor in turn, and a log of who arrived.
@@ -61,10 +64,12 @@ impl<T> Ring<T> {
 }
 
 /// The columns of a storage, S sensors · D slots long where nothing else is said.
-///
-/// What the first pass of the pair test reads comes first, each in memory order.
 #[derive(Debug)]
 pub struct Columns<'a, T> {
+    /// D: slots of each sensor, one after the other.
+    pub depth: usize,
+    /// What the pass over the columns may use.
+    pub instructions: Instructions,
     /// The middle of the arc.
     pub middle_x: &'a mut [T],
     /// The middle of the arc.
@@ -93,6 +98,8 @@ pub struct Columns<'a, T> {
     pub log: &'a mut [u16],
     /// One for each sensor: S entries.
     pub rings: &'a mut [Ring<T>],
+    /// A box for each [`BLOCK`] slots, of which D then has to be a multiple. May be empty: then every arc is tested.
+    pub boxes: &'a mut [Boxes<T>],
 }
 
 /// One reading as it enters a slot.
@@ -116,7 +123,13 @@ fn get<V: Copy>(column: &[V], slot: usize, otherwise: V) -> V {
     column.get(slot).copied().unwrap_or(otherwise)
 }
 
+/// A column's part, empty where it ends before.
+pub(crate) fn part<'a, V>(column: &'a [V], slots: &Range<usize>) -> &'a [V] {
+    column.get(slots.clone()).unwrap_or_default()
+}
+
 impl<T: Scalar> Columns<'_, T> {
+    #[inline(always)]
     pub(crate) fn write(&mut self, slot: usize, entry: &Entry<T>) {
         let (middle, radius, reach) = match &entry.arc {
             Some(arc) => (arc.middle, arc.radius, arc.reach),
@@ -134,6 +147,61 @@ impl<T: Scalar> Columns<'_, T> {
         put(self.departure, slot, entry.arrival);
         put(self.field_of_view, slot, entry.beam.field_of_view());
         put(self.range_resolution, slot, entry.range_resolution.metres());
+        if self.boxes.is_empty() {
+            return;
+        }
+        // What a block still holds of a ring's last round stays in its box until the block is full.
+        match slot % BLOCK {
+            0 => self.fit_box(slot),
+            _ => self.widen_box(slot),
+        }
+    }
+
+    /// Blanks a slot out, so that nothing crosses its arc any more.
+    #[inline(always)]
+    pub(crate) fn blank(&mut self, slot: usize) {
+        put(self.reach, slot, T::NAN);
+        if !self.boxes.is_empty() && slot % BLOCK == BLOCK - 1 {
+            self.fit_box(slot);
+        }
+    }
+
+    /// Makes the box around a slot's block hold the slot's arc too.
+    #[inline]
+    fn widen_box(&mut self, slot: usize) {
+        let block = slot / BLOCK;
+        if let Some(boxes) = self.boxes.get_mut(block / BLOCK) {
+            let at = |column: &[T]| get(column, slot, T::NAN);
+            boxes.include(block % BLOCK, at(self.middle_x), at(self.middle_y), at(self.reach));
+        }
+    }
+
+    /// Makes the box around a slot's block hold the arcs that are in it now, and no more.
+    fn fit_box(&mut self, slot: usize) {
+        let block = slot / BLOCK;
+        let Some(boxes) = self.boxes.get_mut(block / BLOCK) else {
+            return;
+        };
+        boxes.empty(block % BLOCK);
+        let slots = block * BLOCK..(block + 1) * BLOCK;
+        let (xs, ys) = (part(self.middle_x, &slots), part(self.middle_y, &slots));
+        for ((&x, &y), &reach) in xs.iter().zip(ys).zip(part(self.reach, &slots)) {
+            boxes.include(block % BLOCK, x, y, reach);
+        }
+    }
+
+    /// What a sweep reads.
+    #[inline(always)]
+    pub(crate) fn field(&self) -> Field<'_, T> {
+        Field {
+            boxes: self.boxes,
+            middle_x: self.middle_x.as_chunks().0,
+            middle_y: self.middle_y.as_chunks().0,
+            reach: self.reach.as_chunks().0,
+            sensor_x: self.sensor_x.as_chunks().0,
+            sensor_y: self.sensor_y.as_chunks().0,
+            radius: self.radius.as_chunks().0,
+        }
     }
 
     /// The slot's arc; NaN throughout where there is none.
@@ -177,11 +245,9 @@ impl<T: Scalar> Columns<'_, T> {
         for y in self.middle_y.iter_mut().chain(self.sensor_y.iter_mut()) {
             *y -= by.y;
         }
-    }
-
-    /// Slots for each sensor.
-    pub(crate) fn depth(&self) -> usize {
-        self.middle_x.len().checked_div(self.rings.len()).unwrap_or(0)
+        for slot in (0..self.boxes.len() * BLOCK * BLOCK).step_by(BLOCK) {
+            self.fit_box(slot);
+        }
     }
 }
 
@@ -240,6 +306,8 @@ impl<T: Scalar, const S: usize, const H: usize> Storage<T> for LatestArrays<T, S
     #[inline]
     fn columns(&mut self) -> Columns<'_, T> {
         Columns {
+            depth: H,
+            instructions: Instructions::BASELINE,
             middle_x: self.middle_x.as_flattened_mut(),
             middle_y: self.middle_y.as_flattened_mut(),
             reach: self.reach.as_flattened_mut(),
@@ -254,6 +322,7 @@ impl<T: Scalar, const S: usize, const H: usize> Storage<T> for LatestArrays<T, S
             range_resolution: &mut [],
             log: self.log.as_flattened_mut().as_flattened_mut(),
             rings: &mut self.rings,
+            boxes: &mut [],
         }
     }
 
@@ -319,6 +388,8 @@ impl<T: Scalar, const S: usize, const H: usize, const B: usize> Arrays<T, S, H, 
 
     fn split(&mut self) -> (Columns<'_, T>, &mut [T]) {
         let columns = Columns {
+            depth: H * B,
+            instructions: Instructions::BASELINE,
             middle_x: self.middle_x.as_flattened_mut().as_flattened_mut(),
             middle_y: self.middle_y.as_flattened_mut().as_flattened_mut(),
             reach: self.reach.as_flattened_mut().as_flattened_mut(),
@@ -333,6 +404,7 @@ impl<T: Scalar, const S: usize, const H: usize, const B: usize> Arrays<T, S, H, 
             range_resolution: self.range_resolution.as_flattened_mut().as_flattened_mut(),
             log: self.log.as_flattened_mut().as_flattened_mut(),
             rings: &mut self.rings,
+            boxes: &mut [],
         };
         (columns, self.scratch.as_flattened_mut().as_flattened_mut().as_flattened_mut())
     }

@@ -1,3 +1,5 @@
+use proptest::prelude::*;
+
 use super::*;
 
 #[test]
@@ -46,4 +48,20 @@ fn a_shown_cell_is_cut_and_escaped() {
     assert_eq!(shorten(&[b'x'; 40]), format!("\"{}\"", "x".repeat(40)));
     assert_eq!(shorten(&[b'x'; 41]), format!("\"{}…\"", "x".repeat(40)));
     assert_eq!(shorten("€".repeat(1000).as_bytes()), format!("\"{}…\"", "€".repeat(40)));
+}
+
+proptest! {
+    #[test]
+    fn decimal_numbers_are_rounded_as_the_standard_library_rounds_them(cell in "[+-]?[0-9]{0,17}(\\.[0-9]{0,17})?(e-?[0-9]{1,2})?") {
+        let expected = cell.parse::<f64>().ok().filter(|value| value.is_finite());
+        prop_assert_eq!(number(cell.as_bytes()).map(f64::to_bits), expected.map(f64::to_bits));
+    }
+
+    #[test]
+    fn numbers_of_few_digits_are_what_the_standard_library_reads(digits in 0u64..1_000_000_000_000_000, decimals in 0usize..=16, negative: bool) {
+        let text = format!("{}{digits:0>width$}", if negative { "-" } else { "" }, width = decimals + 1);
+        let point = text.len() - decimals;
+        let cell = if decimals == 0 { text } else { format!("{}.{}", &text[..point], &text[point..]) };
+        prop_assert_eq!(number(cell.as_bytes()).unwrap().to_bits(), cell.parse::<f64>().unwrap().to_bits());
+    }
 }

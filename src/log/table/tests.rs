@@ -254,3 +254,33 @@ proptest! {
         }
     }
 }
+
+/// Text of lines, quotes, comments and blanks, mostly of ordinary lines.
+fn lines() -> impl Strategy<Value = Vec<u8>> {
+    let piece = prop_oneof![
+        12 => "[0-9.,-]{1,12}",
+        4 => Just("\n".to_owned()),
+        2 => Just("\r\n".to_owned()),
+        1 => "[\r\"# \t]{1,3}",
+    ];
+    prop::collection::vec(piece, 0..60).prop_map(|pieces| format!("a,b\n{}", pieces.concat()).into_bytes())
+}
+
+proptest! {
+    #[test]
+    fn lines_that_stay_in_place_are_read_as_the_parser_reads_them(text in lines(), delimiter in prop::sample::select(b",;.".to_vec())) {
+        let whole = read_all(&mut delimited(text.clone(), delimiter));
+        // Byte by byte, no line is ever complete when it is begun.
+        let mut pieces = table_of(stuttering(text));
+        pieces.set_delimiter(Some(delimiter)).unwrap();
+        prop_assert_eq!(whole, read_all(&mut pieces));
+    }
+
+    #[test]
+    fn whether_there_is_a_complete_record_is_remembered_rightly(text in lines()) {
+        let mut table = table_of(input([&text[..], &[b'x'; 1 << 17]].concat()));
+        while table.buffer.fills() < 2 && table.next_record(&mut |_| ()).unwrap() == Next::Record {
+            prop_assert_eq!(table.drained(), table.holds_no_record(table.buffer.rest()));
+        }
+    }
+}
