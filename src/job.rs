@@ -95,10 +95,11 @@ pub enum OpenLog {
 }
 
 impl OpenLog {
-    fn recording(&self) -> Option<&McapReadings> {
+    /// Within which time it is put in order, in nanoseconds, where it is a recording.
+    fn window(&self) -> Option<u64> {
         match self {
             Self::Csv(..) => None,
-            Self::Mcap(log) => Some(log),
+            Self::Mcap(log) => Some(log.window()),
         }
     }
 
@@ -202,7 +203,7 @@ impl LogJob {
             let message = format!("--passthrough: {} is a table, no recording that could be copied", input.name);
             return Err(Error::Settings { message });
         }
-        let rig = self.rig.as_ref().ok_or_else(no_rig)?;
+        let rig = self.rig.as_ref().ok_or_else(|| no_rig(&input.name))?;
         let poses = if track.is_some() { PoseUse::Ignored } else { PoseUse::Needed };
         let format = rig.log().map(|formats| formats.readings.clone()).unwrap_or_default();
         let log = CsvReadings::new(input, &format, poses, self.empty, Arc::clone(rig))?;
@@ -210,10 +211,10 @@ impl LogJob {
     }
 }
 
-fn no_rig() -> Error {
+fn no_rig(file: &str) -> Error {
     let built_in = Rig::BUILTIN.join(", ");
     let message = format!(
-        "a table does not say which sensors made it: name the rig with --rig (in Python rig=), a built-in one \
+        "{file}: a table does not say which sensors made it: name the rig with --rig (in Python rig=), a built-in one \
          ({built_in}) or a TOML file"
     );
     Error::Settings { message }
@@ -320,7 +321,7 @@ impl FuseJob {
         let input = outputs::Input {
             ids: self.log.rig.as_deref().map(Rig::ids).unwrap_or_default(),
             mounts: sensors.iter().map(|sensor| sensor.mount).collect(),
-            recording: log.recording(),
+            window: log.window(),
         };
         let mut outputs = Outputs::create(self, settings, &input)?;
         if let (OpenLog::Mcap(log), true, Some(tap)) = (&mut log, self.passthrough, outputs.tap()) {

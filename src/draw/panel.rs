@@ -5,7 +5,7 @@ use atm_core::{Point2, Vector2};
 
 use super::{
     frame::Frame,
-    page::{Anchor, Font, Ink},
+    ink::{Anchor, Font, Ink},
     scene::{Cone, Content, Grid, Layer, Robot, Scene, Wall},
     style::{self, Names, SHADES},
     svg::PathData,
@@ -17,6 +17,8 @@ use crate::{
 
 /// Circles of a larger radius, in pixels, are not drawn: what renders them has single precision.
 const LARGEST: f64 = 1e6;
+/// Marks that are one path. To fill one takes time by the square of its marks, to have many takes room.
+const AT_ONCE: u64 = 1000;
 /// Steps of the path shorter than this many pixels are joined.
 const SHORTEST_STEP: f64 = 0.5;
 /// Height of a letter, and of the words over a dimension line, and half the length of its ticks, in pixels.
@@ -197,12 +199,18 @@ fn marks<'a>(
     names: &Names<'_>,
     ink: &mut Ink,
 ) -> u64 {
-    let (style, mut path, mut outside) = (names.marks(name), PathData::default(), 0);
+    let (style, mut path) = (names.marks(name), PathData::default());
+    let (mut inside, mut outside) = (0, 0);
     for point in points {
-        if view.frame.holds(*point) {
-            style.mark.draw(&mut path, view.x(point.x), view.y(point.y));
-        } else {
+        if !view.frame.holds(*point) {
             outside += 1;
+            continue;
+        }
+        style.mark.draw(&mut path, view.x(point.x), view.y(point.y));
+        inside += 1;
+        if inside % AT_ONCE == 0 {
+            path.write(&style.class, &mut ink.svg);
+            path = PathData::default();
         }
     }
     path.write(&style.class, &mut ink.svg);

@@ -12,8 +12,8 @@ use crate::{
         echoes::TableWriter,
         format::Format,
         mcap::{
-            McapReadings, Tap,
-            write::{Contents, Layout, McapSink, Options, Passing},
+            Tap,
+            write::{Contents, Frames, Layout, McapSink, Options, Transforms},
         },
         output::Output,
     },
@@ -57,8 +57,8 @@ pub(super) struct Input<'a> {
     /// The sensors that are known beforehand, and where they sit.
     pub(super) ids: &'a [Arc<str>],
     pub(super) mounts: Vec<Isometry2<f64>>,
-    /// The log, where it is a recording.
-    pub(super) recording: Option<&'a McapReadings>,
+    /// Within which time it is put in order, in nanoseconds, where it is a recording.
+    pub(super) window: Option<u64>,
 }
 
 /// The files, those that were asked for.
@@ -68,6 +68,11 @@ pub(super) struct Outputs {
     /// Kinds to write, where not all are.
     keep: Option<Vec<Kind>>,
     partials: Vec<String>,
+    mounts: Vec<Isometry2<f64>>,
+    /// The log is copied.
+    passes: bool,
+    /// The log's own frames were taken over.
+    adopted: bool,
 }
 
 impl Outputs {
@@ -82,15 +87,11 @@ impl Outputs {
                     kind: job.schema,
                     layout: layout(settings.emit, &output),
                     contents,
-                    mounts: input.mounts.clone(),
+                    frames: Frames { mounts: input.mounts.clone(), ..Frames::default() },
                     history: settings.history,
-                    passing: input.recording.filter(|_| job.passes(contents)).map(|recording| Passing {
-                        profile: recording.profile().to_owned(),
-                        window: recording.window(),
-                    }),
-                    ..Options::default()
+                    pass_window: input.window.filter(|_| job.passes(contents)),
                 };
-                return McapSink::create(output, file, options).map(|sink| Written::Recording(Box::new(sink)));
+                return Ok(Written::Recording(Box::new(McapSink::new(output, file, options))));
             }
             let ids = input.ids.iter().map(|id| &**id);
             let table = match contents {
@@ -102,7 +103,15 @@ impl Outputs {
         let echoes = job.output.as_deref().map(|path| create(path, job.format(), Contents::Everything));
         let echoes = echoes.transpose()?;
         let crossings = job.crossings.as_deref().map(|path| create(path, Format::of_name(path), Contents::Crossings));
-        Ok(Self { crossings: crossings.transpose()?, echoes, keep: job.keep.clone(), partials })
+        Ok(Self {
+            crossings: crossings.transpose()?,
+            echoes,
+            keep: job.keep.clone(),
+            partials,
+            mounts: input.mounts.clone(),
+            passes: job.passthrough,
+            adopted: false,
+        })
     }
 
     /// Takes in what the log holds besides, where that is to be copied.
@@ -134,6 +143,22 @@ impl Outputs {
         self.crossings.into_iter().chain(self.echoes).try_for_each(Written::commit)
     }
 
+    /// Takes over what the log calls its frames, and leaves out the transforms that it has itself where it is copied.
+    fn adopt(&mut self, log: &crate::log::Frames) {
+        let transforms = match (self.passes, log.has_robot, log.has_mounts) {
+            (true, true, true) => Transforms::None,
+            (true, false, true) => Transforms::Robot,
+            // Where the log says only where the robot is, that is said twice, and no frame has two parents.
+            _ => Transforms::All,
+        };
+        let (fixed, robot, mounts) = (log.fixed.to_string(), log.robot.to_string(), self.mounts.clone());
+        let frames = Frames { fixed, robot, mounts, transforms };
+        for recording in self.recordings() {
+            recording.set_frames(frames.clone());
+        }
+        self.adopted = true;
+    }
+
     fn all(&mut self) -> impl Iterator<Item = &mut Written> {
         self.echoes.iter_mut().chain(&mut self.crossings)
     }
@@ -163,6 +188,9 @@ impl EchoSink for Outputs {
     }
 
     fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        if let (Some(frames), false) = (&row.frames, self.adopted) {
+            self.adopt(frames);
+        }
         self.recordings().try_for_each(|recording| recording.record(row, pose))
     }
 

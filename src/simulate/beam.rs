@@ -121,8 +121,8 @@ mod tests {
     #[test]
     fn weak_mirrors_are_heard_in_the_middle_half() {
         // tan 22.5° = 0.41421.
-        assert!(upwards().mirror_range_to(Point2::new(1.4142, 1.0)).is_some());
-        assert!(upwards().mirror_range_to(Point2::new(1.4143, 1.0)).is_none());
+        assert!(upwards().mirror_range_to(Point2::new(1.8284, 2.0)).is_some());
+        assert!(upwards().mirror_range_to(Point2::new(1.8285, 2.0)).is_none());
     }
 
     #[test]

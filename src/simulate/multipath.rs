@@ -42,6 +42,9 @@ struct Search<'a> {
     found: Option<Reflection>,
 }
 
+/// Where the sound bounced last before the sensor, and where it turned back.
+type Bounced = (Point2<f64>, Point2<f64>);
+
 impl Search<'_> {
     /// Looks through one more mirror, in every mirror there is; `mirrors` are those so far, with the images before each.
     fn follow(&mut self, image: &Image, mirrors: &mut Vec<(u32, Point2<f64>)>) {
@@ -85,7 +88,7 @@ impl Search<'_> {
     }
 
     /// Range, bounce and place of what a leaf stands for, as it is seen in a mirror.
-    fn seen_in(&self, image: &Image, mirror: u32, leaf: u32, best: f64) -> Option<(f64, (Point2<f64>, Point2<f64>))> {
+    fn seen_in(&self, image: &Image, mirror: u32, leaf: u32, best: f64) -> Option<(f64, Bounced)> {
         let world = self.scene.world();
         if leaf == mirror {
             return None;

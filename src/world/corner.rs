@@ -151,7 +151,8 @@ fn sectors(directions: &[Vector2<f64>]) -> Vec<Sector> {
         ordered.pop();
     }
     let next = ordered.iter().cycle().skip(1);
-    let sector = |(&(yaw, from), &(next_yaw, to)): (&(f64, Vector2<f64>), &(f64, Vector2<f64>))| {
+    type Direction = (f64, Vector2<f64>);
+    let sector = |(&(yaw, from), &(next_yaw, to)): (&Direction, &Direction)| {
         let width = if next_yaw > yaw { next_yaw - yaw } else { next_yaw - yaw + TAU };
         let wide = width > PI + ANGLE_SLACK;
         let right = (width - FRAC_PI_2).abs() <= ANGLE_SLACK;

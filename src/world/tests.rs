@@ -106,7 +106,8 @@ fn path_of_a_built_in_world_can_be_chosen() {
 fn waypoints_are_driven_straight_from_one_to_the_next() {
     let text = format!("{WALL}[path]\nkind = \"waypoints\"\npoints = [[0, 0], [0.3, 0], [0.3, -0.3]]\nspeed = 0.1\n");
     let poses: Vec<_> = parse(&text).unwrap().path().sweeps().map(|(t, pose)| (t, pose.x, pose.y, pose.yaw)).collect();
-    let down = -1.570_796_327;
+    // Poses are given to nine decimals.
+    let down = -(std::f64::consts::FRAC_PI_2 * 1e9).round() / 1e9;
     let expected = [
         (0, 0.0, 0.0, 0.0),
         (1_000_000_000, 0.1, 0.0, 0.0),

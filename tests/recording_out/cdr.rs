@@ -14,7 +14,7 @@ impl<'a> Cdr<'a> {
     }
 
     fn take<const N: usize>(&mut self) -> [u8; N] {
-        while self.at % N != 0 {
+        while !self.at.is_multiple_of(N) {
             assert_eq!(self.body[self.at], 0, "padding");
             self.at += 1;
         }

@@ -7,7 +7,8 @@ use std::{
 
 use atm::{
     core::Kind,
-    log::mcap::write::{Contents, Options, SchemaKind, Transforms},
+    log::mcap::write::{Contents, Frames, Options, SchemaKind, Transforms},
+    pipeline::Emit,
     stamp,
 };
 
@@ -15,7 +16,7 @@ use crate::{
     cdr::Cdr,
     cloud::Cloud,
     proto::Proto,
-    sample::{KINDS, Logged, doorway, messages, of_topic, options, recorded, sensor_names, tables},
+    sample::{KINDS, Logged, doorway, fuse, messages, of_topic, options, recorded, sensor_names, sink, tables},
 };
 
 /// A number as a table writes it.
@@ -212,7 +213,7 @@ fn transforms_say_where_the_robot_and_its_sensors_were() {
 #[test]
 fn sensors_that_nobody_mounted_follow_from_their_readings() {
     for kind in KINDS {
-        let file = recorded(&doorway(), Options { mounts: Vec::new(), ..options(kind) });
+        let file = recorded(&doorway(), Options { frames: Frames::default(), ..options(kind) });
         assert!(of_topic(&file, "/tf_static").is_empty());
         let all = all_transforms(&file, "/tf");
         let mut parents: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
@@ -233,7 +234,10 @@ fn sensors_that_nobody_mounted_follow_from_their_readings() {
 fn transforms_that_another_recording_has_are_not_repeated() {
     for kind in KINDS {
         let topics = |transforms| {
-            let file = recorded(&doorway(), Options { transforms, ..options(kind) });
+            let file = {
+                let options = options(kind);
+                recorded(&doorway(), Options { frames: Frames { transforms, ..options.frames.clone() }, ..options })
+            };
             let topics = messages(&file).into_iter().map(|message| message.topic);
             Vec::from_iter(topics.filter(|topic| topic.starts_with("/tf")).collect::<BTreeSet<_>>())
         };
@@ -347,8 +351,12 @@ fn viewers_that_draw_points_alone_see_arcs_crossings_and_path() {
 fn the_frames_are_those_asked_for() {
     let table: String = doorway().lines().take(300).map(|line| format!("{line}\n")).collect();
     for kind in KINDS {
-        let (fixed_frame, robot_frame) = ("map".to_owned(), "5".to_owned());
-        let file = recorded(&table, Options { fixed_frame, robot_frame, ..options(kind) });
+        let mut sink = sink(options(kind));
+        // As late as can be: a log may say itself what its frames are.
+        let frames = Frames { fixed: "map".to_owned(), robot: "5".to_owned(), ..options(kind).frames };
+        sink.set_frames(frames);
+        fuse(&table, Emit::Settled, &mut sink).unwrap();
+        let file = sink.finish().unwrap();
         for message in messages(&file).iter().filter(|message| message.schema.contains("PointCloud")) {
             assert_eq!(Cloud::of(message).frame, "map");
         }

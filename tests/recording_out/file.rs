@@ -20,8 +20,16 @@ use mcap::{
 
 use crate::{
     cloud::Cloud,
-    sample::{KINDS, Recorded, doorway, fuse, messages, nomad, options, recorded, sink, summary, tables},
+    sample::{
+        KINDS, Logged, Recorded, doorway, fuse, messages, nomad, of_topic, options, recorded, sink, summary, tables,
+    },
 };
+
+/// The clouds of echoes that are not empty, with their messages.
+fn echo_clouds(file: &[u8]) -> Vec<(Logged, Cloud)> {
+    let clouds = of_topic(file, "/atm/echoes").into_iter().map(|message| (message.clone(), Cloud::of(&message)));
+    clouds.filter(|(_, cloud)| !cloud.points.is_empty()).collect()
+}
 
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
@@ -58,10 +66,9 @@ fn echoes_are_logged_when_they_are_reported() {
     let mut sink = sink(options(KINDS[0]));
     fuse(&doorway(), Emit::Latest, &mut sink).unwrap();
     let file = sink.finish().unwrap();
-    let clouds: Vec<_> = messages(&file).into_iter().filter(|message| message.topic == "/atm/echoes").collect();
+    let clouds = echo_clouds(&file);
     assert!(clouds.len() > 30);
-    for message in clouds {
-        let cloud = Cloud::of(&message);
+    for (message, cloud) in clouds {
         assert_eq!(cloud.t as u64, message.log_time);
         assert!(cloud.points.iter().all(|point| point["t"] == 0.0));
     }
@@ -78,10 +85,9 @@ fn a_message_holds_a_sweep_of_sensors_that_fire_one_after_another() {
     let mut sink = sink(options(KINDS[0]));
     fuse(&table, Emit::Latest, &mut sink).unwrap();
     let file = sink.finish().unwrap();
-    let clouds: Vec<_> = messages(&file).into_iter().filter(|message| message.topic == "/atm/echoes").collect();
+    let clouds = echo_clouds(&file);
     assert_eq!(clouds.len(), 10);
-    for (sweep, message) in clouds.iter().enumerate() {
-        let cloud = Cloud::of(message);
+    for (sweep, (message, cloud)) in clouds.iter().enumerate() {
         let sensors: Vec<usize> = cloud.points.iter().map(|point| point["sensor"] as usize).collect();
         assert_eq!(sensors, Vec::from_iter(0..16));
         assert_eq!(cloud.t, sweep as i64 * 80_000_000);
@@ -94,8 +100,9 @@ fn a_message_holds_a_sweep_of_sensors_that_fire_one_after_another() {
     });
     let mut sink = crate::sample::sink(options(KINDS[0]));
     fuse(&slow.collect::<String>(), Emit::Latest, &mut sink).unwrap();
-    for message in messages(&sink.finish().unwrap()).iter().filter(|message| message.topic == "/atm/echoes") {
-        let cloud = Cloud::of(message);
+    let clouds = echo_clouds(&sink.finish().unwrap());
+    assert!(clouds.len() >= 40);
+    for (message, cloud) in clouds {
         assert!(message.log_time - cloud.t as u64 <= 100_000_000 && cloud.points.len() <= 4);
     }
 }
@@ -130,7 +137,7 @@ fn what_is_not_finished_is_cut_off_and_all_it_had_can_be_read() {
         }
     }
     let bytes = Arc::new(Mutex::new(Vec::new()));
-    let mut sink = McapSink::create(Kept(Arc::clone(&bytes)), "out".into(), options(KINDS[0])).unwrap();
+    let mut sink = McapSink::new(Kept(Arc::clone(&bytes)), "out".into(), options(KINDS[0]));
     let table = doorway() + "bad\n";
     assert!(matches!(fuse(&table, Emit::Latest, &mut sink), Err(Error::Strict { .. })));
     drop(sink);
@@ -164,7 +171,7 @@ impl Write for Piped {
 fn a_reader_at_a_pipe_has_each_echo_when_the_input_pauses() {
     let pipe = Piped::default();
     let immediate = Options { layout: Layout::Immediate, ..options(KINDS[1]) };
-    let mut sink = McapSink::create(pipe.clone(), "pipe".into(), immediate).unwrap();
+    let mut sink = McapSink::new(pipe.clone(), "pipe".into(), immediate);
     let so_far = |pipe: &Piped| {
         let bytes = pipe.0.lock().unwrap().clone();
         let stream = mcap::MessageStream::new_with_options(&bytes, ReadOptions::IgnoreEndMagic.into()).unwrap();
@@ -213,9 +220,8 @@ fn a_full_disk_is_named_and_nothing_panics() {
         let options = Options { layout, ..options(KINDS[0]) };
         let whole = recorded(&doorway(), options.clone()).len();
         for room in (0..whole).step_by(whole / 7) {
-            let failed = McapSink::create(Full(AtomicUsize::new(room)), "out.mcap".into(), options.clone())
-                .and_then(|mut sink| fuse(&doorway(), Emit::Settled, &mut sink).map(|()| sink))
-                .and_then(McapSink::finish);
+            let mut sink = McapSink::new(Full(AtomicUsize::new(room)), "out.mcap".into(), options.clone());
+            let failed = fuse(&doorway(), Emit::Settled, &mut sink).and_then(|()| sink.finish());
             match failed {
                 Err(Error::Io { file, source }) => {
                     assert_eq!((&*file, source.kind()), ("out.mcap", io::ErrorKind::StorageFull));
@@ -233,7 +239,8 @@ fn a_log_without_a_reading_gives_a_whole_file_with_its_topics() {
         let file = recorded("t,sensor,range,x,y,yaw\n", options(kind));
         assert_eq!(summary(&file).channels.len(), 11);
         let topics: Vec<String> = messages(&file).into_iter().map(|message| message.topic).collect();
-        assert_eq!(topics, ["/tf_static"]);
+        // Empty clouds: viewers know what there will be, and in which frame.
+        assert_eq!(topics, ["/tf_static", "/atm/echoes", "/atm/map", "/atm/crossings/points"]);
         assert_eq!(crate::sample::sensor_names(&file).len(), nomad().sensors().len());
     }
     let [echoes, _] = tables("t,sensor,range,x,y,yaw\n");

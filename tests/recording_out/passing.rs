@@ -7,7 +7,7 @@ use atm::{
         Row,
         mcap::{
             Attachment, Channel, Message, Metadata, Schema, Tap,
-            write::{McapSink, Options, PassThrough, Passing, SENSORS, SchemaKind},
+            write::{McapSink, Options, PassThrough, SENSORS, SchemaKind},
         },
     },
     pipeline::{EchoSink, Emit},
@@ -18,8 +18,7 @@ use crate::sample::{KINDS, Logged, Recorded, doorway, fuse, messages, of_topic, 
 const SECOND: u64 = 1_000_000_000;
 
 fn passing(kind: SchemaKind) -> Options {
-    let passing = Passing { profile: "ros2".into(), window: 2 * SECOND };
-    Options { passing: Some(passing), ..options(kind) }
+    Options { pass_window: Some(2 * SECOND), ..options(kind) }
 }
 
 fn channel(id: u16, topic: &str) -> Arc<Channel> {
@@ -206,8 +205,9 @@ fn messages_that_wait_are_bounded_in_bytes() {
 #[test]
 fn the_profile_promises_no_more_than_every_channel_holds() {
     let profile = |kind, profile: &str| {
-        let passing = Some(Passing { profile: profile.into(), window: 0 });
-        let file = sink(Options { passing, ..options(kind) }).finish().unwrap();
+        let sink = sink(passing(kind));
+        sink.pass_through().header(profile, "somebody").unwrap();
+        let file = sink.finish().unwrap();
         let header = mcap::read::LinearReader::new(&file).unwrap().next().unwrap().unwrap();
         let mcap::records::Record::Header(header) = header else { panic!("a header comes first") };
         header.profile

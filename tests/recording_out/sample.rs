@@ -9,7 +9,7 @@ use atm::{
         Input, Row,
         csv::{CsvReadings, PoseUse},
         echoes::TableWriter,
-        mcap::write::{McapSink, Options, SENSORS, SchemaKind},
+        mcap::write::{Frames, McapSink, Options, SENSORS, SchemaKind},
     },
     pipeline::{self, Defaults, EchoSink, Emit, Settings},
     rig::{Rig, TableFormat},
@@ -42,11 +42,11 @@ pub fn fuse(table: &str, emit: Emit, sink: &mut dyn EchoSink) -> Result<()> {
 /// Options for the Nomad's ring.
 pub fn options(kind: SchemaKind) -> Options {
     let mounts: Vec<Isometry2<f64>> = nomad().sensors().iter().map(|sensor| sensor.mount()).collect();
-    Options { kind, mounts, ..Options::default() }
+    Options { kind, frames: Frames { mounts, ..Frames::default() }, ..Options::default() }
 }
 
 pub fn sink(options: Options) -> McapSink<Vec<u8>> {
-    McapSink::create(Vec::new(), "recording".into(), options).expect("memory takes it")
+    McapSink::new(Vec::new(), "recording".into(), options)
 }
 
 /// The recording of a table.

@@ -231,7 +231,7 @@ fn a_schema_that_names_range_and_is_none_is_refused_with_the_reason() {
         (&definition(RANGE).replace("float32 range ", "string range "), "it has no field `range` of the kind"),
         (&definition(RANGE).replace("float32 range ", "float32[] range "), "it has no field `range`"),
         ("Range range\n", "types that hold types"),
-        ("float32 range[\n", "is no field"),
+        ("float32[ range\n", "is no field"),
     ] {
         let (ran, counts) = topic_of(definition);
         ran.exits(3).says(&["784 bad_schema", "/sonar/0 at 4000", words]);

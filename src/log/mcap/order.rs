@@ -2,7 +2,7 @@
 
 use std::{
     cmp::{Ordering, Reverse},
-    collections::BinaryHeap,
+    collections::{BinaryHeap, VecDeque},
 };
 
 use crate::track::RESET_RUN;
@@ -59,13 +59,13 @@ pub(super) enum Out<T> {
 
 /// Holds readings back until those recorded `window` later have come.
 ///
-/// One that is earlier than what was handed on already came too late. [`RESET_RUN`] of them with none in time between are a clock
-/// that was set back: what is held comes out, and then they are put in order as any others.
+/// One that is earlier than what was handed on already came too late. [`RESET_RUN`] of them or more, with none in time between for a
+/// whole window, are a clock that was set back: what is held comes out, and then they are put in order as any others.
 #[derive(Debug)]
 pub(super) struct Order<T> {
     window: u64,
     held: BinaryHeap<Reverse<Held<T>>>,
-    late: Vec<Held<T>>,
+    late: VecDeque<Held<T>>,
     /// The latest time that was handed on.
     passed: Option<i64>,
     /// The time of recording, as far as it has come.
@@ -85,7 +85,7 @@ impl<T> Order<T> {
         Self {
             window,
             held: BinaryHeap::new(),
-            late: Vec::new(),
+            late: VecDeque::new(),
             passed: None,
             now: 0,
             number: 0,
@@ -119,26 +119,28 @@ impl<T> Order<T> {
             self.held.push(Reverse(held));
             return;
         }
-        self.late.push(held);
-        self.set_back = self.late.len() >= RESET_RUN as usize;
+        // A sweep of many sensors that is late as a whole is no clock set back: the next one is in time again.
+        let lasts = self.late.front().and_then(|first| log_time.checked_sub(first.log_time));
+        self.late.push_back(held);
+        let lasts = lasts.is_some_and(|lasts| lasts >= self.window);
+        self.set_back |= (self.late.len() >= RESET_RUN as usize && lasts) || self.late.len() > MOST;
     }
 
     /// There will be no more.
     pub(super) fn end(&mut self) {
-        self.flushing = true;
         self.letting_go = !self.late.is_empty() && !self.set_back;
+        self.flushing = true;
     }
 
     /// What is due; `None` where more has to come first.
     pub(super) fn pop(&mut self) -> Option<Out<T>> {
         if self.letting_go {
-            if !self.late.is_empty() {
-                return Some(Out::Late(self.late.remove(0).what));
+            match self.late.pop_front() {
+                Some(late) => return Some(Out::Late(late.what)),
+                None => self.letting_go = false,
             }
-            self.letting_go = false;
         }
-        let head = self.held.peek();
-        let is_due = head.is_some_and(|Reverse(head)| {
+        let is_due = self.held.peek().is_some_and(|Reverse(head)| {
             let waited = self.now.checked_sub(head.log_time);
             waited.is_some_and(|waited| waited >= self.window) || self.flushing || self.set_back
         });

@@ -22,7 +22,7 @@ use crate::{
     pipeline::{AnyTrack, Defaults},
     rig::Rig,
     stamp,
-    track::Pose,
+    track::{Pose, time_backwards},
 };
 
 /// How long transforms are kept for readings that come behind them, in nanoseconds: 10 s, as tf2 does.
@@ -245,9 +245,12 @@ impl Reader {
 
     /// Makes a record of what comes out, if it is one.
     fn hand_on(&mut self, out: Out<Reading>, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Option<Next>> {
-        let (reading, is_late) = match out {
-            Out::Next(reading) => (reading, false),
-            Out::Late(reading) => (reading, true),
+        let reading = match out {
+            Out::Next(reading) => reading,
+            Out::Late(reading) => {
+                problems(time_backwards(reading.t, self.order.passed(), self.place(reading.byte)));
+                return Ok(Some(Next::Unusable));
+            }
             Out::SetBack => {
                 self.whereabouts.set_back();
                 for late in std::mem::take(&mut self.late) {
@@ -260,12 +263,11 @@ impl Reader {
         row.t = reading.t;
         row.log_time = time(reading.log_time);
         row.place = self.place(reading.byte);
-        // Whoever takes it counts it as going back in time, before a pose is asked for.
-        let placed = if is_late { None } else { self.placed(&reading, problems)? };
+        let placed = self.placed(&reading, problems)?;
         let needed = self.options.poses == PoseUse::Needed;
         let (pose, range, view) = match placed {
             Some(placed) if needed => placed,
-            None if needed && !is_late => return Ok(Some(Next::Unusable)),
+            None if needed => return Ok(Some(Next::Unusable)),
             // As it stands in the recording.
             _ => (None, reading.range, view(reading.sight, Isometry2::identity())),
         };

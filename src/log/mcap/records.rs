@@ -27,7 +27,7 @@ const MOST_ENTRIES: usize = 1 << 16;
 const HEAD: usize = 9;
 /// A chunk's fields before its compression.
 const CHUNK_HEAD: usize = 32;
-/// Longest name of a compression or a profile.
+/// Longest name of a compression.
 const LONGEST_NAME: usize = 32;
 
 /// Opcodes (mcap.dev/spec, "Records").
@@ -156,7 +156,6 @@ pub(super) struct Records {
     /// Channels that were handed on.
     told: Vec<u64>,
     damaged: bool,
-    profile: String,
 }
 
 impl Records {
@@ -170,11 +169,10 @@ impl Records {
         let complete = statistics.is_some_and(|count| count as usize == registry.channels().count());
         window.go_to(0).map_err(failed)?;
         window.begin_checksum();
-        let (mut arena, mut profile) = (Arena::default(), String::new());
+        let mut arena = Arena::default();
         let start = window.need(MAGIC.len()).map_err(failed)?;
         let stage = if start == MAGIC {
             window.use_up(MAGIC.len());
-            profile = header_profile(&mut window).map_err(failed)?;
             Stage::File(window)
         } else if MAGIC.starts_with(start) {
             let count = start.len();
@@ -184,18 +182,7 @@ impl Records {
             let place = Place { file: name, line: 0, byte: 0 };
             return Err(Error::Format { place, message: "no MCAP recording: it does not begin as one".into() });
         };
-        Ok(Self {
-            name,
-            stage,
-            position: 0,
-            registry,
-            complete,
-            limits,
-            arena,
-            told: vec![0; 1 << 10],
-            damaged: false,
-            profile,
-        })
+        Ok(Self { name, stage, position: 0, registry, complete, limits, arena, told: vec![0; 1 << 10], damaged: false })
     }
 
     /// The channels known so far.
@@ -206,11 +193,6 @@ impl Records {
     /// Whether all channels of the file are known.
     pub(super) fn is_complete(&self) -> bool {
         self.complete
-    }
-
-    /// The profile in the header; empty where there is none.
-    pub(super) fn profile(&self) -> &str {
-        &self.profile
     }
 
     /// Whether the file ended before it should have.
@@ -292,7 +274,7 @@ impl Records {
                 return self.data_end(window, &frame, checksum);
             }
             0 => {
-                let lost = self.rest(&mut window)?;
+                let lost = self.lost_from(&mut window, byte);
                 let words = format!("no record begins here; the {lost} bytes from here on are lost");
                 self.arena.problem(Reason::Truncated, byte, words);
                 return Ok(Stage::Ended);
@@ -311,8 +293,7 @@ impl Records {
 
     /// The file ends within the record that begins at `byte`.
     fn cut(&mut self, mut window: Window<Recording>, byte: u64, what: &str) -> Stage {
-        let lost = self.rest(&mut window).unwrap_or_default() + (window.position() - byte);
-        let lost = window.length().map_or(lost, |length| length.saturating_sub(byte));
+        let lost = self.lost_from(&mut window, byte);
         let words = match lost {
             0 => "cut off: the file ends without an end of the data; 0 bytes are lost".to_owned(),
             _ => format!("cut off: the last {lost} bytes, the beginning of {what}, are lost"),
@@ -321,12 +302,23 @@ impl Records {
         Stage::Ended
     }
 
-    /// Uses up all there is, and says how much that was.
-    fn rest(&mut self, window: &mut Window<Recording>) -> io::Result<u64> {
-        if let Some(length) = window.length() {
-            return Ok(length.saturating_sub(window.position()));
-        }
-        window.skip(u64::MAX)
+    /// The file ends behind its data, within what begins at `byte`.
+    fn cut_summary(&mut self, mut window: Window<Recording>, byte: u64) -> Stage {
+        let lost = self.lost_from(&mut window, byte);
+        let words = format!("cut off behind the data: no message is lost, and of the summary the last {lost} bytes");
+        self.arena.problem(Reason::Truncated, byte, words);
+        Stage::Ended
+    }
+
+    /// Bytes from `byte` to the end.
+    fn lost_from(&mut self, window: &mut Window<Recording>, byte: u64) -> u64 {
+        let end = window.length().unwrap_or_else(|| {
+            // What can't be read any more can't be counted.
+            let _ = window.skip(u64::MAX);
+            window.position()
+        });
+        self.position = end;
+        end.saturating_sub(byte)
     }
 
     /// Takes one record in, its head used up: keeps it, or passes over it.
@@ -423,21 +415,21 @@ impl Records {
     fn summary_record(&mut self, mut window: Window<Recording>) -> io::Result<Stage> {
         let byte = window.position();
         let Some(head) = window.peek::<HEAD>()? else {
-            return Ok(self.cut(window, byte, "a record of the summary (no message)"));
+            return Ok(self.cut_summary(window, byte));
         };
         let frame = framed(head, byte);
         let end = byte.saturating_add(HEAD as u64).saturating_add(frame.length);
         let cut = window.length().is_some_and(|length| end > length);
         window.use_up(HEAD);
         if cut || window.skip(frame.length)? < frame.length {
-            return Ok(self.cut(window, byte, "a record of the summary (no message)"));
+            return Ok(self.cut_summary(window, byte));
         }
         if frame.opcode != op::FOOTER {
             return Ok(Stage::Summary(window));
         }
         let byte = window.position();
         if window.peek()? != Some(MAGIC) {
-            return Ok(self.cut(window, byte, "the mark of the end (no message)"));
+            return Ok(self.cut_summary(window, byte));
         }
         window.use_up(MAGIC.len());
         self.position = window.position();
@@ -595,14 +587,6 @@ impl Records {
         let saved = self.arena.entries.iter().filter(|entry| matches!(entry.what, Kept::Record(op::MESSAGE))).count();
         self.cut(window, byte, &format!("a chunk of which {saved} messages could be read"))
     }
-}
-
-/// The profile in the header, which is left to be read.
-fn header_profile(window: &mut Window<Recording>) -> io::Result<String> {
-    let most = HEAD + 4 + LONGEST_NAME;
-    let mut fields = Fields(window.need(most)?);
-    let is_header = fields.bytes(1) == Some(&[op::HEADER]) && fields.u64().is_some();
-    Ok(fields.text().filter(|_| is_header).unwrap_or_default().to_owned())
 }
 
 fn framed(head: [u8; HEAD], byte: u64) -> Frame {

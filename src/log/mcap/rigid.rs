@@ -112,3 +112,6 @@ impl Rigid {
         Pose { x, y, yaw: libm::atan2(sin, cos) }
     }
 }
+
+#[cfg(test)]
+mod tests;

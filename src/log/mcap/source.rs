@@ -65,11 +65,6 @@ impl McapReadings {
         Ok(readings)
     }
 
-    /// The profile in the recording's header; empty where there is none.
-    pub fn profile(&self) -> &str {
-        self.records.profile()
-    }
-
     /// How much later than others a message may be recorded and still be put in order, in nanoseconds.
     pub fn window(&self) -> u64 {
         self.reader.options().reorder

@@ -212,3 +212,6 @@ impl Tree {
         )
     }
 }
+
+#[cfg(test)]
+mod tests;

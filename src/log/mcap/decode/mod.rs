@@ -126,3 +126,6 @@ fn definitions(encoding: Encoding, name: &str, language: &str, data: &[u8]) -> R
         _ => Err(format!("a schema in {language} describes no {encoding:?}")),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -65,6 +65,15 @@ fn sixteen_late_ones_in_a_row_are_a_clock_set_back() {
 }
 
 #[test]
+fn sixteen_late_ones_within_a_window_are_late() {
+    let before = (100..103).map(|t| (t, t as u64));
+    let late = (0..16).map(|t| (t, 110));
+    let readings: Vec<_> = before.chain(late).chain([(103, 111)]).collect();
+    let late = (0..16).map(|t| format!("({t})")).collect::<Vec<_>>().join(" ");
+    assert_eq!(order(2, &readings), format!("100 101 102 {late} 103"));
+}
+
+#[test]
 fn fifteen_late_ones_are_late() {
     let before = (100..103).map(|t| (t, t as u64));
     let late = (0..15).map(|t| (t, 110 + t as u64));

@@ -59,6 +59,6 @@ pub(super) const fn color_of(kind: Kind) -> Color {
         Kind::Single => Color::new(0x56_b4_e9, 0xff),
         Kind::Near => Color::new(0xcc_79_a7, 0xff),
         Kind::Pair => Color::new(0xe6_9f_00, 0xff),
-        _ => Color::new(0xd5_5e_00, 0x60),
+        _ => Color::new(0xd5_5e_00, 0xc0),
     }
 }

@@ -37,10 +37,22 @@ pub(super) struct SchemaText {
     pub(super) data: Vec<u8>,
 }
 
-/// An MCAP file that is written front to back. Dropped without [`McapFile::finish`], it is left without a summary, as a file
-/// that was cut off.
+/// How far a file is.
+enum State<W: Write> {
+    /// Nothing is written yet.
+    Waiting {
+        out: W,
+        options: WriteOptions,
+    },
+    Begun(Box<Writer<NoSeek<W>>>),
+    /// It could not be begun.
+    Failed,
+}
+
+/// An MCAP file that is written front to back, from the first thing on that is written to it. Dropped without
+/// [`McapFile::finish`], it is left without a summary, as a file that was cut off.
 pub(super) struct McapFile<W: Write> {
-    writer: Option<Writer<NoSeek<W>>>,
+    state: State<W>,
     /// In messages.
     name: Arc<str>,
     /// Messages so far by channel.
@@ -48,8 +60,8 @@ pub(super) struct McapFile<W: Write> {
 }
 
 impl<W: Write> McapFile<W> {
-    /// Begins a file; `name` is what errors call it.
-    pub(super) fn create(out: W, name: Arc<str>, profile: &str, layout: Layout) -> Result<Self> {
+    /// A file; `name` is what errors call it.
+    pub(super) fn new(out: W, name: Arc<str>, profile: &str, layout: Layout) -> Self {
         let options = WriteOptions::new()
             .profile(profile)
             .library(LIBRARY)
@@ -58,15 +70,35 @@ impl<W: Write> McapFile<W> {
             .compression_threads(0)
             .use_chunks(layout == Layout::Chunked)
             .disable_seeking(true);
-        match options.create(NoSeek::new(out)) {
-            Ok(writer) => Ok(Self { writer: Some(writer), name, sequences: BTreeMap::new() }),
-            Err(error) => Err(named(&name, error)),
+        Self { state: State::Waiting { out, options }, name, sequences: BTreeMap::new() }
+    }
+
+    /// Changes what the header says of the channels; too late where it is written.
+    pub(super) fn set_profile(&mut self, profile: &str) {
+        if let State::Waiting { options, .. } = &mut self.state {
+            *options = options.clone().profile(profile);
         }
     }
 
     fn with<T>(&mut self, work: impl FnOnce(&mut Writer<NoSeek<W>>) -> Result<T, McapError>) -> Result<T> {
-        let result = self.writer.as_mut().map_or(Err(McapError::AttemptedWriteAfterFailure), work);
+        let result = match self.writer() {
+            Ok(writer) => work(writer),
+            Err(error) => Err(error),
+        };
         result.map_err(|error| named(&self.name, error))
+    }
+
+    /// The writer, with which the file begins.
+    fn writer(&mut self) -> Result<&mut Writer<NoSeek<W>>, McapError> {
+        if matches!(self.state, State::Waiting { .. })
+            && let State::Waiting { out, options } = std::mem::replace(&mut self.state, State::Failed)
+        {
+            self.state = State::Begun(Box::new(options.create(NoSeek::new(out))?));
+        }
+        match &mut self.state {
+            State::Begun(writer) => Ok(writer),
+            _ => Err(McapError::AttemptedWriteAfterFailure),
+        }
     }
 
     /// A channel's number; it is written at its first mention.
@@ -138,7 +170,9 @@ impl<W: Write> McapFile<W> {
 
     /// Writes the summary, and returns what the file was written to.
     pub(super) fn finish(mut self) -> Result<W> {
-        let Some(mut writer) = self.writer.take() else {
+        // A file without anything in it has a beginning and an end.
+        self.with(|_| Ok(()))?;
+        let State::Begun(mut writer) = std::mem::replace(&mut self.state, State::Failed) else {
             return Err(named(&self.name, McapError::AttemptedWriteAfterFailure));
         };
         let finished = writer.finish();
@@ -150,7 +184,7 @@ impl<W: Write> McapFile<W> {
 
 impl<W: Write> Drop for McapFile<W> {
     fn drop(&mut self) {
-        if let Some(mut writer) = self.writer.take() {
+        if let State::Begun(mut writer) = std::mem::replace(&mut self.state, State::Failed) {
             // What can still be saved of a run that failed: its error is known already.
             let _ = writer.flush();
             // Dropped as it is, the writer would end the file as if it were whole.

@@ -9,7 +9,9 @@ use std::{
 use super::{
     super::raw::{Attachment, Channel, Message, Metadata},
     file::{McapFile, SchemaText},
+    recording::{ORIGIN, origin},
     ros2::qos::Words,
+    schema::SchemaKind,
 };
 use crate::error::Result;
 
@@ -48,12 +50,15 @@ pub(super) struct Merged<W: Write> {
     /// From the other recording's channels to their numbers here.
     foreign: BTreeMap<u16, u16>,
     own_topics: BTreeSet<String>,
+    kind: SchemaKind,
     words: Words,
+    /// The other recording says where it comes from.
+    has_origin: bool,
 }
 
 impl<W: Write> Merged<W> {
-    /// `own_topics` are those of this program.
-    pub(super) fn new(file: McapFile<W>, window: u64, own_topics: BTreeSet<String>) -> Self {
+    /// `own_topics` are those of this program, with messages of `kind`.
+    pub(super) fn new(file: McapFile<W>, kind: SchemaKind, window: u64, own_topics: BTreeSet<String>) -> Self {
         Self {
             file,
             written: 0,
@@ -66,13 +71,18 @@ impl<W: Write> Merged<W> {
             numbers: BTreeSet::new(),
             foreign: BTreeMap::new(),
             own_topics,
+            kind,
             words: Words::default(),
+            has_origin: false,
         }
     }
 
-    /// How policies are written in this file.
-    pub(super) const fn words(&self) -> Words {
-        self.words
+    /// How policies are written in this file; where that is by number, it says so.
+    pub(super) fn agree_on_words(&mut self) -> Result<Words> {
+        if self.kind == SchemaKind::Ros2 && self.words == Words::Numbers && !self.has_origin {
+            self.file.metadata(&origin())?;
+        }
+        Ok(self.words)
     }
 
     /// Messages of the other recording that came later than the window allows, and stand out of order.
@@ -118,6 +128,13 @@ impl<W: Write> Merged<W> {
         self.file.finish()
     }
 
+    /// Takes over the other recording's profile where it is this program's own: it promises something of every channel.
+    pub(super) fn add_foreign_profile(&mut self, profile: &str) {
+        if profile == self.kind.profile() {
+            self.file.set_profile(profile);
+        }
+    }
+
     /// Takes over a channel of the other recording. It keeps its number where that is free.
     pub(super) fn add_foreign_channel(&mut self, channel: &Channel) -> Result<()> {
         if let Some(words) = Words::of(&channel.metadata) {
@@ -160,6 +177,7 @@ impl<W: Write> Merged<W> {
 
     /// Copies named texts of the other recording.
     pub(super) fn add_foreign_metadata(&mut self, metadata: &Metadata) -> Result<()> {
+        self.has_origin |= metadata.name == ORIGIN;
         self.file.metadata(metadata)
     }
 

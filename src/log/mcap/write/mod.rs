@@ -21,7 +21,7 @@ pub mod topics;
 pub use self::{
     file::Layout,
     merged::COLLISION_PREFIX,
-    options::{Contents, Options, Passing, Transforms},
+    options::{Contents, Frames, Options, Transforms},
     pass::PassThrough,
     recording::{FIXED_FRAME, ROBOT_FRAME, RecordingWriter},
     schema::SchemaKind,

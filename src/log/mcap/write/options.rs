@@ -30,13 +30,29 @@ pub enum Transforms {
     None,
 }
 
-/// Another recording that is copied into the file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Passing {
-    /// The profile in its header.
-    pub profile: String,
-    /// Within this time, in nanoseconds, its messages are put in order.
-    pub window: u64,
+/// Names of frames, and what is written of how they lie to each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frames {
+    /// The frame of the echoes.
+    pub fixed: String,
+    /// The robot's own frame.
+    pub robot: String,
+    /// Where sensors sit on the robot, by their indices. Where the others sit follows from their readings.
+    pub mounts: Vec<Isometry2<f64>>,
+    /// Which transforms are written.
+    pub transforms: Transforms,
+}
+
+impl Default for Frames {
+    /// `odom` and `base_link`; all transforms.
+    fn default() -> Self {
+        Self {
+            fixed: FIXED_FRAME.to_owned(),
+            robot: ROBOT_FRAME.to_owned(),
+            mounts: Vec::new(),
+            transforms: Transforms::default(),
+        }
+    }
 }
 
 /// How a recording is written.
@@ -44,37 +60,28 @@ pub struct Passing {
 pub struct Options {
     /// The kind of messages.
     pub kind: SchemaKind,
-    /// How records are laid out; [`Layout::Immediate`] also hands everything on at each [`EchoSink::flush`].
+    /// How records are laid out; [`Layout::Immediate`] also hands everything on at each flush.
     pub layout: Layout,
     /// What is written.
     pub contents: Contents,
-    /// The frame of the echoes.
-    pub fixed_frame: String,
-    /// The robot's own frame.
-    pub robot_frame: String,
-    /// Where sensors sit on the robot, by their indices. Where the others sit follows from their readings.
-    pub mounts: Vec<Isometry2<f64>>,
-    /// Which transforms are written.
-    pub transforms: Transforms,
+    /// The frames, as far as they are known beforehand.
+    pub frames: Frames,
     /// H: so many arcs of each sensor stay drawn.
     pub history: usize,
-    /// Another recording that is copied; [`McapSink::pass_through`] takes it in.
-    pub passing: Option<Passing>,
+    /// Where another recording is copied: within this time, in nanoseconds, its messages are put in order.
+    pub pass_window: Option<u64>,
 }
 
 impl Default for Options {
-    /// Everything, for Foxglove, in a file, with frames `odom` and `base_link`, and H of the paper.
+    /// Everything, for Foxglove, in a file, with the default frames, and H of the paper.
     fn default() -> Self {
         Self {
             kind: SchemaKind::default(),
             layout: Layout::default(),
             contents: Contents::default(),
-            fixed_frame: FIXED_FRAME.to_owned(),
-            robot_frame: ROBOT_FRAME.to_owned(),
-            mounts: Vec::new(),
-            transforms: Transforms::default(),
+            frames: Frames::default(),
             history: 10,
-            passing: None,
+            pass_window: None,
         }
     }
 }

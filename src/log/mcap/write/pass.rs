@@ -58,6 +58,13 @@ impl<W: Write> PassThrough<W> {
 }
 
 impl<W: Write> Tap for PassThrough<W> {
+    fn header(&mut self, profile: &str, _library: &str) -> Result<()> {
+        self.file.with(|file| {
+            file.add_foreign_profile(profile);
+            Ok(())
+        })
+    }
+
     fn channel(&mut self, channel: &Arc<Channel>) -> Result<()> {
         self.file.with(|file| file.add_foreign_channel(channel))
     }

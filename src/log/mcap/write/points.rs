@@ -182,7 +182,7 @@ pub(super) struct PointLayout {
 }
 
 impl PointLayout {
-    pub(super) fn new(kind: SchemaKind, points: Points) -> Self {
+    fn new(kind: SchemaKind, points: Points) -> Self {
         let (place, rest) = match (points, kind) {
             (Points::Dots, SchemaKind::Foxglove) => (FOXGLOVE_DOT, Fields::default()),
             (Points::Dots, SchemaKind::Ros2) => (ROS_DOT, Fields::default()),
@@ -242,6 +242,29 @@ impl PointLayout {
         }
         rest(bytes);
         bytes.resize(start + self.stride, 0);
+    }
+}
+
+/// The layouts of one kind of messages.
+#[derive(Debug)]
+pub(super) struct Layouts {
+    echoes: PointLayout,
+    crossings: PointLayout,
+    dots: PointLayout,
+}
+
+impl Layouts {
+    pub(super) fn new(kind: SchemaKind) -> Self {
+        let layout = |points| PointLayout::new(kind, points);
+        Self { echoes: layout(Points::Echoes), crossings: layout(Points::Crossings), dots: layout(Points::Dots) }
+    }
+
+    pub(super) const fn of(&self, points: Points) -> &PointLayout {
+        match points {
+            Points::Echoes => &self.echoes,
+            Points::Crossings => &self.crossings,
+            Points::Dots => &self.dots,
+        }
     }
 }
 

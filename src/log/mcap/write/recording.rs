@@ -56,7 +56,7 @@ impl<W: Write> RecordingWriter<W> {
     /// # Errors
     /// What the output says.
     pub fn create(out: W, name: Arc<str>, rig: &Rig, start: i64) -> Result<Self> {
-        let mut file = McapFile::create(out, name, ros2::PROFILE, Layout::Chunked)?;
+        let mut file = McapFile::new(out, name, ros2::PROFILE, Layout::Chunked);
         file.metadata(&origin())?;
         let mut channel = |topic: &str, definition: &Definition, durability| {
             let metadata = qos::metadata(durability, Words::Numbers);
@@ -137,10 +137,13 @@ impl<W: Write> RecordingWriter<W> {
     }
 }
 
-/// What the recorder of ROS 2 says of a file. Without it, its player takes the numbers in the channels' offers for names.
+/// The name of the metadata in which the recorder of ROS 2 says of a file which release it belongs to.
+pub(super) const ORIGIN: &str = "rosbag2";
+
+/// What the recorder of Humble says of a file. Without it, later players take the numbers in the channels' offers for names.
 pub(super) fn origin() -> Metadata {
     let entries = BTreeMap::from([("ROS_DISTRO".to_owned(), "humble".to_owned())]);
-    Metadata { name: "rosbag2".to_owned(), entries }
+    Metadata { name: ORIGIN.to_owned(), entries }
 }
 
 /// A topic for each id, no two alike.

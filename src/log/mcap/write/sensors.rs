@@ -1,11 +1,8 @@
-//! Sensors by their indices: their names, their frames, and where they sit.
+//! Sensors by their indices: their names and their frames.
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use atm_core::Isometry2;
-
-use super::{super::raw::Metadata, content::pose_of};
-use crate::track::Pose;
+use super::{super::raw::Metadata, options::Frames};
 
 /// The name of the metadata that hold sensors' ids by their indices, in decimal. A file may have several: sensors that became
 /// known on the way.
@@ -15,15 +12,9 @@ pub const SENSORS: &str = "atm.sensors";
 #[derive(Debug, Default)]
 pub(super) struct Sensors {
     ids: Vec<Arc<str>>,
-    /// Of the first ones, where they sit on the robot.
-    mounts: Vec<Isometry2<f64>>,
 }
 
 impl Sensors {
-    pub(super) fn new(mounts: Vec<Isometry2<f64>>) -> Self {
-        Self { ids: Vec::new(), mounts }
-    }
-
     /// Takes the ids of all sensors known now. Returns what has to be written of the new ones.
     pub(super) fn learn(&mut self, ids: &[Arc<str>]) -> Option<Metadata> {
         let known = self.ids.len();
@@ -40,18 +31,8 @@ impl Sensors {
     }
 
     /// The frame: named as the sensor, but never as one of the frames it hangs on.
-    pub(super) fn frame(&self, sensor: u16, above: [&str; 2]) -> String {
+    pub(super) fn frame(&self, sensor: u16, frames: &Frames) -> String {
         let id = self.id(sensor);
-        if above.contains(&id.as_str()) { format!("sensor/{id}") } else { id }
-    }
-
-    /// Whether it is known where the sensor sits without a reading of it.
-    pub(super) fn is_mounted(&self, sensor: u16) -> bool {
-        usize::from(sensor) < self.mounts.len()
-    }
-
-    /// The sensors of which that is known.
-    pub(super) fn mounted(&self) -> impl Iterator<Item = (u16, Pose)> + '_ {
-        (0..=u16::MAX).zip(&self.mounts).map(|(sensor, mount)| (sensor, pose_of(mount)))
+        if [&frames.fixed, &frames.robot].contains(&&id) { format!("sensor/{id}") } else { id }
     }
 }

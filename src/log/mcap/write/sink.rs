@@ -9,23 +9,17 @@ use super::{
     content::{Cloud, Content, Transform, pose_of},
     file::{Layout, McapFile},
     merged::Merged,
-    options::{Contents, Options, Transforms},
+    options::{Contents, Frames, Options, Transforms},
     pass::{PassThrough, Shared},
-    points::{PointLayout, Points},
-    recording::origin,
+    points::{Layouts, Points},
     ros2::qos::Durability,
-    schema::{Encoder, SchemaKind},
+    schema::Encoder,
     sensors::Sensors,
     so_far::{EchoesSoFar, PathSoFar},
     sweep::{CROSSING_COLOR, CROSSING_GROUP, MOST_POINTS, Placed, Sweep},
     topics::{self, Topic},
 };
-use crate::{
-    error::Result,
-    log::{Frames, Row},
-    pipeline::EchoSink,
-    track::Pose,
-};
+use crate::{error::Result, log::Row, pipeline::EchoSink, track::Pose};
 
 /// Writes what is fused as an MCAP recording, a message of each sort for each sweep of the sensors.
 ///
@@ -37,7 +31,7 @@ pub struct McapSink<W: Write> {
     encoder: Encoder,
     /// By [`Topic`]; empty until something is written.
     channels: Vec<(Topic, u16)>,
-    layouts: [PointLayout; 3],
+    layouts: Layouts,
     sensors: Sensors,
     sweep: Sweep,
     echoes: EchoesSoFar,
@@ -49,32 +43,21 @@ pub struct McapSink<W: Write> {
 }
 
 impl<W: Write> McapSink<W> {
-    /// Begins a recording; `name` is what errors call the output.
-    ///
-    /// # Errors
-    /// What the output says.
-    pub fn create(out: W, name: Arc<str>, options: Options) -> Result<Self> {
+    /// A recording, which begins with the first that is written to it; `name` is what errors call the output.
+    pub fn new(out: W, name: Arc<str>, options: Options) -> Self {
         let kind = options.kind;
-        // A profile promises something of every channel, those that are copied included.
-        let profile = match &options.passing {
-            Some(passing) if passing.profile != kind.profile() => "",
-            _ => kind.profile(),
-        };
-        let mut file = McapFile::create(out, name, profile, options.layout)?;
-        if options.passing.is_none() && kind == SchemaKind::Ros2 {
-            file.metadata(&origin())?;
-        }
-        let window = options.passing.as_ref().map_or(0, |passing| passing.window);
+        // A profile promises something of every channel; what another recording's are, it will say itself.
+        let profile = if options.pass_window.is_some() { "" } else { kind.profile() };
+        let file = McapFile::new(out, name, profile, options.layout);
         // Transforms of both may share a topic.
         let topics: BTreeSet<String> =
             Topic::ALL.iter().filter(|topic| !topic.is_transforms()).map(|topic| topic.name(&options)).collect();
-        let layout = |points| PointLayout::new(kind, points);
-        Ok(Self {
-            file: Shared::new(Merged::new(file, window, topics)),
+        Self {
+            file: Shared::new(Merged::new(file, kind, options.pass_window.unwrap_or(0), topics)),
             encoder: Encoder::new(kind),
             channels: Vec::new(),
-            layouts: [Points::Echoes, Points::Crossings, Points::Dots].map(layout),
-            sensors: Sensors::new(options.mounts.clone()),
+            layouts: Layouts::new(kind),
+            sensors: Sensors::default(),
             sweep: Sweep::new(options.history),
             echoes: EchoesSoFar::default(),
             path: PathSoFar::new(),
@@ -82,10 +65,15 @@ impl<W: Write> McapSink<W> {
             robot: Isometry2::identity(),
             bytes: Vec::new(),
             options,
-        })
+        }
     }
 
-    /// Takes another recording's contents in, while this one is written. Give [`Options::passing`].
+    /// Says what the frames are. To be said before the first record: what is written stays.
+    pub fn set_frames(&mut self, frames: Frames) {
+        self.options.frames = frames;
+    }
+
+    /// Takes another recording's contents in, while this one is written. Give [`Options::pass_window`].
     pub fn pass_through(&self) -> PassThrough<W> {
         PassThrough::new(self.file.clone())
     }
@@ -105,21 +93,7 @@ impl<W: Write> McapSink<W> {
         self.file.take()?.finish()
     }
 
-    /// Takes over what the log calls its frames, and leaves out the transforms that another recording, where one is copied, has.
-    fn adopt(&mut self, frames: &Frames) {
-        self.options.fixed_frame = frames.fixed.to_string();
-        self.options.robot_frame = frames.robot.to_string();
-        if self.options.passing.is_some() {
-            self.options.transforms = match (frames.has_robot, frames.has_mounts) {
-                (true, true) => Transforms::None,
-                (false, true) => Transforms::Robot,
-                // The robot's own stand beside those that say the same.
-                (_, false) => Transforms::All,
-            };
-        }
-    }
-
-    /// Declares the channels and says where the sensors sit, once, with `t` as the time.
+    /// Declares the channels and says what holds from the beginning, once, with `t` as the time.
     fn begin(&mut self, t: i64) -> Result<()> {
         if !self.channels.is_empty() {
             return Ok(());
@@ -127,7 +101,7 @@ impl<W: Write> McapSink<W> {
         let options = &self.options;
         let wanted = Topic::ALL.into_iter().filter(|topic| topic.is_wanted(options));
         self.channels = self.file.with(|file| {
-            let words = file.words();
+            let words = file.agree_on_words()?;
             wanted
                 .map(|topic| {
                     let durability =
@@ -138,21 +112,23 @@ impl<W: Write> McapSink<W> {
                 })
                 .collect()
         })?;
-        let mounts: Vec<(String, Pose)> =
-            self.sensors.mounted().map(|(sensor, pose)| (self.sensor_frame(sensor), pose)).collect();
-        let transforms: Vec<Transform<'_>> = mounts
-            .iter()
-            .map(|(child, pose)| Transform { t, parent: &self.options.robot_frame, child, pose: *pose })
-            .collect();
-        if transforms.is_empty() {
-            return Ok(());
+        self.say_mounts(t)?;
+        // Viewers place a topic in its frame from its first message on, and complain until then.
+        for topic in [Topic::Echoes, Topic::Map, Topic::CrossingPoints] {
+            self.bytes.clear();
+            self.send_cloud(topic, t)?;
         }
-        let content = Content::Transforms(&transforms);
-        send(&self.file, &mut self.encoder, channel(&self.channels, Topic::Mounts), self.log_time, &content)
+        Ok(())
     }
 
-    fn sensor_frame(&self, sensor: u16) -> String {
-        self.sensors.frame(sensor, [&self.options.fixed_frame, &self.options.robot_frame])
+    fn say_mounts(&mut self, t: i64) -> Result<()> {
+        let frames = &self.options.frames;
+        let sensor = |(sensor, mount)| (self.sensors.frame(sensor, frames), pose_of(mount));
+        let mounts: Vec<(String, Pose)> = (0..=u16::MAX).zip(&frames.mounts).map(sensor).collect();
+        let transforms: Vec<Transform<'_>> =
+            mounts.iter().map(|(child, pose)| Transform { t, parent: &frames.robot, child, pose: *pose }).collect();
+        let content = Content::Transforms(&transforms);
+        send(&self.file, &mut self.encoder, channel(&self.channels, Topic::Mounts), self.log_time, &content)
     }
 
     /// Writes what the sweep has gathered, and begins the next.
@@ -177,20 +153,20 @@ impl<W: Write> McapSink<W> {
         if placed.is_empty() {
             return Ok(());
         }
-        let (fixed, robot) = (self.options.fixed_frame.clone(), self.options.robot_frame.clone());
-        let frame = |placed: &Placed| placed.sensor.map(|sensor| self.sensor_frame(sensor));
-        let frames: Vec<Option<String>> = placed.iter().map(frame).collect();
+        let frames = self.options.frames.clone();
+        let children: Vec<Option<String>> =
+            placed.iter().map(|placed| placed.sensor.map(|sensor| self.sensors.frame(sensor, &frames))).collect();
         let transforms: Vec<Transform<'_>> = placed
             .iter()
-            .zip(&frames)
+            .zip(&children)
             .map(|(&Placed { t, pose, .. }, sensor)| match sensor {
-                Some(child) => Transform { t, parent: &robot, child, pose },
-                None => Transform { t, parent: &fixed, child: &robot, pose },
+                Some(child) => Transform { t, parent: &frames.robot, child, pose },
+                None => Transform { t, parent: &frames.fixed, child: &frames.robot, pose },
             })
             .collect();
         self.send(Topic::Robot, &Content::Transforms(&transforms))?;
         if let Some((t, pose)) = self.sweep.pose {
-            self.send(Topic::Pose, &Content::Pose { t, frame: &fixed, pose })?;
+            self.send(Topic::Pose, &Content::Pose { t, frame: &frames.fixed, pose })?;
         }
         // The memory is kept.
         self.sweep.placed = placed;
@@ -201,13 +177,13 @@ impl<W: Write> McapSink<W> {
         let echoes = std::mem::take(&mut self.sweep.echoes);
         for run in runs(&echoes, |echo| echo.t) {
             let since = earliest(run, |echo| echo.t);
-            let [layout, ..] = &self.layouts;
+            let layout = self.layouts.of(Points::Echoes);
             self.bytes.clear();
             for echo in run {
                 let (place, color) = (echo.position, color_of(echo.kind));
                 layout.push(&mut self.bytes, place.x, place.y, color, |bytes| put_echo(bytes, echo, since));
             }
-            self.send_cloud(Topic::Echoes, since, 0)?;
+            self.send_cloud(Topic::Echoes, since)?;
         }
         self.sweep.echoes = echoes;
         self.sweep.echoes.clear();
@@ -222,7 +198,7 @@ impl<W: Write> McapSink<W> {
         let crossings = std::mem::take(&mut self.sweep.crossings);
         for run in runs(&crossings, |crossing| crossing.t) {
             let since = earliest(run, |crossing| crossing.t);
-            let [_, layout, _] = &self.layouts;
+            let layout = self.layouts.of(Points::Crossings);
             self.bytes.clear();
             for crossing in run {
                 let place = crossing.position;
@@ -230,7 +206,7 @@ impl<W: Write> McapSink<W> {
                     put_crossing(bytes, crossing, since);
                 });
             }
-            self.send_cloud(Topic::CrossingPoints, since, 1)?;
+            self.send_cloud(Topic::CrossingPoints, since)?;
         }
         self.sweep.crossings = crossings;
         self.sweep.crossings.clear();
@@ -242,42 +218,42 @@ impl<W: Write> McapSink<W> {
             return Ok(());
         }
         self.send_scene(Topic::Arcs)?;
-        let [.., dots] = &self.layouts;
+        let dots = self.layouts.of(Points::Dots);
         self.bytes.clear();
         for point in &self.sweep.arcs.points {
             dots.push(&mut self.bytes, point.x, point.y, self.sweep.arcs.color, |_| {});
         }
-        self.send_cloud(Topic::ArcPoints, self.sweep.t, 2)
+        self.send_cloud(Topic::ArcPoints, self.sweep.t)
     }
 
     /// Echoes and path so far, where they have grown.
     fn write_so_far(&mut self, at_end: bool) -> Result<()> {
         if self.echoes.take_due(at_end) {
-            let [.., dots] = &self.layouts;
+            let dots = self.layouts.of(Points::Dots);
             self.bytes.clear();
             for (place, kind) in self.echoes.iter() {
                 dots.push(&mut self.bytes, place.x, place.y, color_of(*kind), |_| {});
             }
-            self.send_cloud(Topic::Map, self.sweep.t, 2)?;
+            self.send_cloud(Topic::Map, self.sweep.t)?;
         }
         if self.path.take_due(at_end) {
             let poses = self.path.poses();
-            let (t, frame) = (self.sweep.t, self.options.fixed_frame.clone());
+            let (t, frame) = (self.sweep.t, self.options.frames.fixed.clone());
             self.send(Topic::Path, &Content::Path { t, frame: &frame, poses: &poses })?;
-            let [.., dots] = &self.layouts;
+            let dots = self.layouts.of(Points::Dots);
             self.bytes.clear();
             for (_, pose) in &poses {
                 dots.push(&mut self.bytes, pose.x, pose.y, topics::PATH_COLOR, |_| {});
             }
-            self.send_cloud(Topic::PathPoints, t, 2)?;
+            self.send_cloud(Topic::PathPoints, t)?;
         }
         Ok(())
     }
 
-    /// Sends the points that were gathered in `bytes`, of the layout with this index.
-    fn send_cloud(&mut self, topic: Topic, t: i64, layout: usize) -> Result<()> {
-        let Some(layout) = self.layouts.get(layout) else { return Ok(()) };
-        let cloud = Cloud { t, frame: &self.options.fixed_frame, layout, points: &self.bytes };
+    /// Sends the points that were gathered in `bytes`.
+    fn send_cloud(&mut self, topic: Topic, t: i64) -> Result<()> {
+        let layout = self.layouts.of(topic.points());
+        let cloud = Cloud { t, frame: &self.options.frames.fixed, layout, points: &self.bytes };
         let channel = channel(&self.channels, topic);
         send(&self.file, &mut self.encoder, channel, self.log_time, &Content::Cloud(cloud))
     }
@@ -287,7 +263,7 @@ impl<W: Write> McapSink<W> {
         let scene = if topic == Topic::Arcs { &self.sweep.arcs } else { &self.sweep.marks };
         let sensors = &self.sensors;
         let groups = |group| if group == CROSSING_GROUP { "crossings".to_owned() } else { sensors.id(group) };
-        let content = Content::Scene { frame: &self.options.fixed_frame, scene, groups: &groups };
+        let content = Content::Scene { frame: &self.options.frames.fixed, scene, groups: &groups };
         send(&self.file, &mut self.encoder, channel(&self.channels, topic), self.log_time, &content)
     }
 }
@@ -323,9 +299,6 @@ impl<W: Write> EchoSink for McapSink<W> {
             self.end_sweep(false)?;
         }
         self.log_time = log_time;
-        if let (Some(frames), true) = (&row.frames, self.channels.is_empty()) {
-            self.adopt(frames);
-        }
         self.begin(row.t)?;
         self.robot = Isometry2::from_parts(
             Vector2::new(pose.x, pose.y).into(),
@@ -341,7 +314,9 @@ impl<W: Write> EchoSink for McapSink<W> {
     fn reading(&mut self, reading: &Reading<f64>) -> Result<()> {
         if self.options.contents == Contents::Everything {
             self.sweep.draw(reading);
-            if self.options.transforms == Transforms::All && !self.sensors.is_mounted(reading.sensor) {
+            let frames = &self.options.frames;
+            let is_mounted = usize::from(reading.sensor) < frames.mounts.len();
+            if frames.transforms == Transforms::All && !is_mounted {
                 let pose = pose_of(&self.robot.inv_mul(&reading.pose));
                 self.sweep.placed.push(Placed { t: reading.t, sensor: Some(reading.sensor), pose });
             }

@@ -3,6 +3,7 @@
 use super::{
     content::{Color, Sort},
     options::{Contents, Options, Transforms},
+    points::Points,
     schema::SchemaKind,
 };
 
@@ -50,7 +51,7 @@ impl Topic {
     /// Transforms are looked for under these two names alone in ROS. Beside another recording's, those of another kind have names
     /// of their own.
     pub(super) fn name(self, options: &Options) -> String {
-        let apart = self.is_transforms() && options.passing.is_some() && options.kind == SchemaKind::Foxglove;
+        let apart = self.is_transforms() && options.pass_window.is_some() && options.kind == SchemaKind::Foxglove;
         let name = match self {
             Self::Mounts => "/tf_static",
             Self::Robot => "/tf",
@@ -77,6 +78,15 @@ impl Topic {
         }
     }
 
+    /// What a cloud of the topic is made of.
+    pub(super) const fn points(self) -> Points {
+        match self {
+            Self::Echoes => Points::Echoes,
+            Self::CrossingPoints => Points::Crossings,
+            _ => Points::Dots,
+        }
+    }
+
     pub(super) const fn is_transforms(self) -> bool {
         matches!(self, Self::Mounts | Self::Robot)
     }
@@ -86,8 +96,8 @@ impl Topic {
         match self {
             Self::Crossings | Self::CrossingPoints => true,
             _ if options.contents == Contents::Crossings => false,
-            Self::Mounts => options.transforms == Transforms::All && !options.mounts.is_empty(),
-            Self::Robot => options.transforms != Transforms::None,
+            Self::Mounts => options.frames.transforms == Transforms::All && !options.frames.mounts.is_empty(),
+            Self::Robot => options.frames.transforms != Transforms::None,
             _ => true,
         }
     }

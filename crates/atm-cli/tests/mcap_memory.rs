@@ -1,0 +1,97 @@
+//! Memory does not grow with a recording, of which most is what nobody asked for. The peak is read from the running command,
+//! once it has used all readings.
+#![cfg(target_os = "linux")]
+
+mod support;
+
+use std::{
+    fs,
+    io::Write,
+    process::{Child, Command, Stdio},
+};
+
+use support::recording::*;
+
+/// Most memory any run here may take, in KiB.
+const MOST: u64 = 96 * 1024;
+/// How far apart two peaks may lie and still be equal, in KiB.
+const EQUAL: u64 = 2048;
+/// What nobody asked for, in one message.
+const IMAGE_BYTES: usize = 1 << 20;
+
+/// The drive with an image for each instant, again and again, time going on; at the end more than pipe and command hold.
+fn long(times: usize, layout: Layout) -> Vec<u8> {
+    let mut recording = Recording::default();
+    for round in 0..times {
+        let later = 60_000_000_000 * round as u64;
+        for message in drive().messages {
+            if round > 0 && message.topic == "/tf_static" {
+                continue;
+            }
+            let mut data = message.data;
+            // The stamp: of the header itself, or of the one transform.
+            let at = if message.topic.starts_with("/tf") { 8 } else { 4 };
+            if let Some(seconds) = data.get_mut(at..at + 4) {
+                let t = u32::from_le_bytes(seconds.try_into().expect("four bytes")) + 60 * round as u32;
+                seconds.copy_from_slice(&t.to_le_bytes());
+            }
+            if message.topic == "/sonar/0" && recording.messages.len() % 5 == 0 {
+                recording.push("/camera", IMAGE, (message.log_time + later) as i64, image(0, IMAGE_BYTES));
+            }
+            recording.messages.push(Message { log_time: message.log_time + later, data, ..message });
+        }
+    }
+    let end = recording.messages.last().expect("a message").log_time as i64;
+    for _ in 0..4 {
+        recording.push("/camera", IMAGE, end + 1, image(0, IMAGE_BYTES));
+    }
+    recording.laid_out(layout)
+}
+
+fn high_water_mark(child: &Child) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).expect("the running command");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("its peak");
+    line.trim().trim_end_matches(" kB").parse().expect("a number")
+}
+
+/// Runs the command on what comes down a pipe. Returns its peak memory in KiB.
+fn peak(args: &[&str], bytes: &[u8]) -> u64 {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_atm"))
+        .args(args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("atm starts");
+    let mut input = child.stdin.take().expect("its input");
+    let (most, rest) = bytes.split_at(bytes.len() - (2 << 20));
+    input.write_all(most).expect("the command reads on");
+    let peak = high_water_mark(&child);
+    input.write_all(rest).expect("the command reads on");
+    drop(input);
+    assert_eq!(child.wait().expect("its end").code(), Some(0));
+    peak
+}
+
+#[track_caller]
+fn peaks_are_equal(args: &[&str], layout: Layout) {
+    let [small, large] = [1, 7].map(|times| {
+        let bytes = long(times, layout);
+        (peak(args, &bytes), bytes.len())
+    });
+    println!("{args:?}: {} KiB of {} bytes, {} KiB of {}", small.0, small.1, large.0, large.1);
+    assert!(large.1 > 5 * small.1 && large.1 > 100 << 20);
+    assert!(small.0.abs_diff(large.0) <= EQUAL, "{small:?} {large:?}");
+    assert!(small.0.max(large.0) < MOST, "{large:?}");
+}
+
+#[test]
+fn fusing_takes_the_same_memory_for_six_times_the_recording() {
+    peaks_are_equal(&["fuse", "-"], Layout::Chunks(None));
+    peaks_are_equal(&["fuse", "-"], Layout::Bare);
+}
+
+#[test]
+fn info_takes_the_same_memory_for_six_times_the_recording() {
+    peaks_are_equal(&["info", "-"], Layout::Chunks(None));
+}
