@@ -30,6 +30,7 @@ use self::{
 };
 use crate::{
     error::{Error, Result},
+    intake::Defaults,
     log::truth::TruthPoint,
     rig::{Rig, Sensor},
     stamp,
@@ -45,7 +46,6 @@ const NANOMETRES: f64 = 1e9;
 pub struct Simulation {
     scene: Scene,
     rig: Rig,
-    field_of_view: f64,
     effects: Effects,
     seed: u64,
 }
@@ -69,7 +69,8 @@ impl Simulation {
     /// The drive of a robot along the world's path; `field_of_view` is the full beam of sensors of which the rig does not
     /// say it, in radians, within (0, π].
     pub fn new(world: World, rig: Rig, field_of_view: f64, effects: Effects, seed: u64) -> Self {
-        Self { scene: Scene::new(world, seed), rig, field_of_view, effects, seed }
+        let rig = rig.with_field_of_view(field_of_view);
+        Self { scene: Scene::new(world, seed), rig, effects, seed }
     }
 
     /// The world with its bumps drawn.
@@ -77,7 +78,7 @@ impl Simulation {
         &self.scene
     }
 
-    /// The sensors.
+    /// The sensors, their beams completed.
     pub fn rig(&self) -> &Rig {
         &self.rig
     }
@@ -113,7 +114,7 @@ impl Simulation {
         let listener =
             Listener { pose: robot * sensor.mount(), min_range: sensor.min_range(), max_range: sensor.max_range() };
         self.check(t, &robot, &listener, sensor)?;
-        let beam = Beam::new(&listener.pose, sensor.field_of_view().unwrap_or(self.field_of_view));
+        let beam = Beam::new(&listener.pose, sensor.field_of_view().unwrap_or(Defaults::FIELD_OF_VIEW));
         let source = self.reflection(&beam, listener.max_range);
         let mut sound = Sound { range: source.map(|source| source.range), source };
         for layer in layers {

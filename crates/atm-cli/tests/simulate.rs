@@ -72,6 +72,23 @@ fn log_goes_through_fuse() {
 }
 
 #[test]
+fn recording_fuses_to_the_echoes_of_the_table() {
+    let scratch = Scratch::new();
+    let recording = scratch.name("log.mcap");
+    simulate(&["doorway", "-o", &recording]).exits(0).writes_nothing();
+    // Nothing names the sensors but the recording: ids are its frames. Ranges there are in single precision, and time is 1 s on.
+    let found = atm(["fuse", &recording, "--range-resolution", "1in"]).exits(0).echoes();
+    let expected = fuse_sample(&[]).exits(0).echoes();
+    assert_eq!(found.len(), expected.len());
+    let same = found.iter().zip(&expected).filter(|(found, expected)| {
+        assert_eq!((number(&found.t), &found.sensor), (number(&expected.t) + 1.0, &expected.sensor));
+        found.kind == expected.kind && (found.x - expected.x).hypot(found.y - expected.y) < 1e-5
+    });
+    // A rounded range may carry a crossing over the border of a beam, or across the least angle.
+    assert!(same.count() >= expected.len() - 6, "of {}", expected.len());
+}
+
+#[test]
 fn wrong_arguments_are_named() {
     simulate(&["doorway", "--set", "opening=-36in"]).exits(2).says(&["doorway: opening = -36in: must be above zero"]);
     simulate(&["doorway", "--set", "door=36in"])

@@ -11,7 +11,7 @@ use super::{
 Built-in worlds: doorway, closed-wall, tee, pole, specular-wall, rough-wall, diffuse-wall, corners, room. --set opening=36in sets \
 one parameter of a world; a wrong one is answered with those there are. The rig's ranges come rounded to its resolution; \
 all else is off unless --noise says so, as in --noise range=1cm,dropout=5%,crosstalk=1%,multipath,odometry=1cm,heading=0.5deg \
-(deviations of range, and of position and yaw after a metre). The same arguments write the same bytes on every machine.")]
+(deviations of range, and of position and yaw after a metre). The same arguments write the same bytes on every machine. A table begins at 0 s, a recording at 1 s.")]
 pub struct Simulate {
     /// The world: a built-in one or a TOML file
     pub world: String,

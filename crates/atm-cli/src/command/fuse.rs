@@ -2,7 +2,6 @@
 
 use atm::{
     core::{Kind, MinAngle, TransversalMedian},
-    error::Error,
     job::{Ended, FuseJob},
     pipeline::{self, Emit, SensorModel, Settings},
     summary::Summary,
@@ -11,7 +10,7 @@ use atm::{
 use crate::{
     Failure, Outcome,
     args::{self, Fuse},
-    is_reader_gone, report,
+    command, is_reader_gone, report,
 };
 
 /// Share of echoes of kind `near` above which a guessed range resolution deserves a word.
@@ -47,7 +46,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     for note in &notes {
         report::say(format_args!("{note}"));
     }
-    result.map_err(|error| unfinished(error, &partials))?;
+    result.map_err(|error| command::unfinished(error, "fused", &partials))?;
     Ok(if summary.is_clean() { Outcome::Done } else { Outcome::Partly })
 }
 
@@ -89,15 +88,5 @@ fn tell(args: &Fuse, pose_source: Option<&str>, summary: &Summary, guessed: bool
             "warning: {near} of {total} echoes are near; a range resolution of 1in was assumed, say --range-resolution if \
              the ranges are finer"
         ));
-    }
-}
-
-/// What is said of a run that did not end well: why, and where what it had written is.
-fn unfinished(error: Error, partials: &[String]) -> Failure {
-    match Failure::from(error) {
-        Failure::Failed(message) if !partials.is_empty() => {
-            Failure::Failed(format!("{message}\natm: what was fused until then is in {}", partials.join(" and ")))
-        }
-        failure => failure,
     }
 }

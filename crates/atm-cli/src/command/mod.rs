@@ -6,3 +6,17 @@ pub mod fuse;
 pub mod info;
 pub mod plan;
 pub mod simulate;
+
+use atm::error::Error;
+
+use crate::Failure;
+
+/// What is said of a run that did not end well: why, and where what it had written is.
+fn unfinished(error: Error, done: &str, partials: &[String]) -> Failure {
+    match Failure::from(error) {
+        Failure::Failed(message) if !partials.is_empty() => {
+            Failure::Failed(format!("{message}\natm: what was {done} until then is in {}", partials.join(" and ")))
+        }
+        failure => failure,
+    }
+}
