@@ -2,9 +2,11 @@
 //! (Choset, Nagatani, Lazar 2003), on logs.
 pub use atm_core as core;
 
+pub mod baseline;
 pub mod error;
 pub mod intake;
 pub mod log;
+pub mod map;
 pub mod pipeline;
 pub mod rig;
 pub mod stamp;

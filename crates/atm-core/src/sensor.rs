@@ -67,6 +67,16 @@ impl<T: Scalar> Limits<T> {
         Ok(Self { min, max })
     }
 
+    /// The smallest distance that is an echo, in metres.
+    pub const fn min(&self) -> T {
+        self.min
+    }
+
+    /// The distance from which on there is none, in metres; may be +∞.
+    pub const fn max(&self) -> T {
+        self.max
+    }
+
     /// What a raw reading in metres means. ±∞ as in REP 117; a reading at its maximum is none.
     pub fn classify(&self, range: T) -> Range<T> {
         if range >= self.max {
