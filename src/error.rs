@@ -32,6 +32,8 @@ pub enum Reason {
     MissingField,
     /// The rig has no sensor of this id.
     UnknownSensor,
+    /// A truth file's cause that is none.
+    UnknownCause,
     /// No pose within the gap on both sides of the reading.
     NoPose,
     /// Earlier than the latest usable record.
@@ -48,6 +50,7 @@ impl Reason {
             Self::BadPose => "bad_pose",
             Self::MissingField => "missing_field",
             Self::UnknownSensor => "unknown_sensor",
+            Self::UnknownCause => "unknown_cause",
             Self::NoPose => "no_pose",
             Self::TimeBackwards => "time_backwards",
             Self::TooLong => "too_long",
@@ -96,6 +99,14 @@ pub enum Error {
     #[error("{file}: {message}")]
     Rig {
         /// The rig's file or name, with line where known.
+        file: Arc<str>,
+        /// The key, its value, and what was expected.
+        message: String,
+    },
+    /// A world that can't be used.
+    #[error("{file}: {message}")]
+    World {
+        /// The world's file or name, with line where known.
         file: Arc<str>,
         /// The key, its value, and what was expected.
         message: String,

@@ -3,7 +3,9 @@
 pub use atm_core as core;
 
 pub mod baseline;
+pub mod draw;
 pub mod error;
+pub mod eval;
 pub mod intake;
 pub mod log;
 pub mod map;
@@ -13,6 +15,7 @@ pub mod stamp;
 pub mod storage;
 pub mod summary;
 pub mod survey;
+mod toml_document;
 pub mod track;
 pub mod units;
 pub mod world;

@@ -2,28 +2,29 @@
 //!
 //! A rig comes from TOML ([`Rig::load`]), from the built-in ones ([`Rig::builtin`]), or from code ([`Rig::ring`], [`Rig::new`]).
 //! Whichever way, its invariants hold from then on: nothing behind a getter has to be checked again.
-mod document;
 mod format;
 mod read;
 
 use std::{
     collections::HashMap,
     f64::consts::{PI, TAU},
-    fs,
-    io::{self, Read},
-    path::Path,
     sync::Arc,
 };
 
 use nalgebra::{Isometry2, Translation2, UnitComplex};
 
 pub use self::format::{LogFormats, TableFormat};
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    toml_document::{self, Kind},
+};
 
 /// Most sensors of a rig: their indices are 16 bits wide, and the count is, too.
 pub const MAX_SENSORS: usize = u16::MAX as usize;
 /// Largest rig file that is read, in bytes.
-pub const MAX_FILE: u64 = 16 * 1024 * 1024;
+pub const MAX_FILE: u64 = toml_document::MAX_FILE;
+/// Rig files.
+const KIND: Kind = Kind { name: "rig", builtin: &Rig::BUILTIN, error: |file, message| Error::Rig { file, message } };
 
 /// What a sensor sees: its beam and the ranges it measures. Checked where a [`Sensor`] is made of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -212,7 +213,7 @@ impl Rig {
     pub fn load(name_or_path: &str) -> Result<Self> {
         match Self::builtin(name_or_path) {
             Some(rig) => Ok(rig),
-            None => Self::parse(&read_file(name_or_path)?, name_or_path),
+            None => Self::parse(&KIND.read(name_or_path)?, name_or_path),
         }
     }
 
@@ -288,34 +289,6 @@ fn direction(yaw: f64) -> UnitComplex<f64> {
 
 fn rig_error(file: &str, message: String) -> Error {
     Error::Rig { file: file.into(), message }
-}
-
-/// Reads a rig file, of bounded size even where the system can't tell it (a pipe, a device).
-fn read_file(file: &str) -> Result<String> {
-    let io_error = |source| Error::Io { file: file.into(), source };
-    if Path::new(file).is_dir() {
-        return Err(rig_error(file, "is a directory, not a rig file".to_owned()));
-    }
-    let source = fs::File::open(file).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => io_error(not_found()),
-        _ => io_error(error),
-    })?;
-    let mut bytes = Vec::new();
-    source.take(MAX_FILE + 1).read_to_end(&mut bytes).map_err(io_error)?;
-    if bytes.len() as u64 > MAX_FILE {
-        return Err(rig_error(file, format!("larger than {} MiB: no rig file", MAX_FILE >> 20)));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = document::line_of(error.as_bytes(), valid);
-        rig_error(&format!("{file}:{line}"), format!("not UTF-8 text (byte {valid})"))
-    })
-}
-
-/// What to say of a name that is neither a built-in rig nor a file.
-fn not_found() -> io::Error {
-    let message = format!("no such rig file, and no built-in rig of this name ({})", Rig::BUILTIN.join(", "));
-    io::Error::new(io::ErrorKind::NotFound, message)
 }
 
 #[cfg(test)]

@@ -83,6 +83,13 @@ impl Dropped {
         self.0.entry(problem.reason).and_modify(|(count, _)| *count += 1).or_insert((1, problem));
     }
 
+    /// Counts what another file had after it; the first of each reason stays.
+    pub fn extend(&mut self, other: Self) {
+        for (reason, (count, first)) in other.0 {
+            self.0.entry(reason).and_modify(|(all, _)| *all += count).or_insert((count, first));
+        }
+    }
+
     /// Each reason met, with its count and its first record.
     pub fn iter(&self) -> impl Iterator<Item = (Reason, u64, &Problem)> {
         self.0.iter().map(|(&reason, (count, first))| (reason, *count, first))

@@ -2,12 +2,16 @@
 mod buffer;
 mod cell;
 mod columns;
+pub mod content;
+pub mod crossing_table;
 pub mod csv;
+pub mod echo_table;
 pub mod echoes;
 pub mod format;
 pub mod output;
 pub mod poses;
 pub mod table;
+pub mod truth;
 
 use std::{fs, io, sync::Arc};
 

@@ -6,12 +6,13 @@ use std::{
 
 use nalgebra::{Isometry2, Translation2};
 
-use super::{
-    Invalid, LogFormats, MAX_SENSORS, Ranging, Rig, Sensor, TableFormat, direction,
-    document::{Document, Entry, Section},
-    ring_sensors,
+use super::{Invalid, KIND, LogFormats, MAX_SENSORS, Ranging, Rig, Sensor, TableFormat, direction, ring_sensors};
+use crate::{
+    error::Result,
+    stamp,
+    toml_document::{Document, Entry, Section},
+    units::Scale,
 };
-use crate::{error::Result, stamp, units::Scale};
 
 const TOP: [&str; 4] = ["name", "ring", "sensor", "log"];
 /// Keys that stand at the top for all sensors, and under a sensor for itself.
@@ -25,7 +26,7 @@ const POSES: &str = "poses";
 
 /// Reads a whole rig.
 pub(super) fn rig(text: &str, file: &str) -> Result<Rig> {
-    let document = Document { file, text };
+    let document = Document { file, text, kind: &KIND };
     let root = document.parse()?;
     let top = Section::root(document, &root);
     top.only(&[&TOP, &RANGING])?;

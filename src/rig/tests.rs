@@ -1,3 +1,5 @@
+use std::{fs, io};
+
 use super::*;
 
 /// Half a picometre: what the rounding of a sine may amount to on a robot.

@@ -265,7 +265,7 @@ pub fn fuse<'py>(
     };
     let (rig, defaults, settings) = (rig_of(rig)?, options.defaults()?, options.settings()?);
     let arguments = Arguments::new(&call, &rig, Shape::Array)?;
-    let mut echoes = Echoes::new(&rig, arguments.clock(), keep);
+    let mut echoes = Echoes::new(&rig, arguments.clock(), keep, arguments.readings().len());
     let summary = run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut echoes)?;
     if defaults.guesses_resolution(&rig) {
         warn_of_near(py, &summary)?;

@@ -16,6 +16,9 @@ use crate::time::Clock;
 /// Characters of the longest kind's name.
 const KIND_WIDTH: usize = 6;
 
+/// Numbers in a row of echoes: time, position, range, azimuth, count, resolution, significance.
+const ECHO_NUMBERS: usize = 8;
+
 /// A text as numpy's `U` holds it: four bytes a character, zeros behind.
 fn wide(text: &str, width: usize) -> Vec<u8> {
     text.chars().map(u32::from).chain(iter::repeat(0)).take(width).flat_map(u32::to_ne_bytes).collect()
@@ -35,6 +38,14 @@ impl Rows {
         let ids = || rig.sensors().iter().map(|sensor| sensor.id());
         let id_width = ids().map(|id| id.chars().count()).max().unwrap_or(0).max(1);
         Self { bytes: Vec::new(), clock, ids: ids().map(|id| wide(id, id_width)).collect(), id_width }
+    }
+
+    /// Makes room for `rows` of `floats` numbers of 8 bytes and a kind each; memory that is not used is never touched.
+    fn reserve(&mut self, rows: usize, floats: usize) {
+        let id = self.ids.first().map_or(0, Vec::len);
+        let width = id + 8 * floats + 4 * KIND_WIDTH;
+        // Where there is no such room, the table grows as it can.
+        let _ = self.bytes.try_reserve_exact(rows.saturating_mul(width));
     }
 
     #[inline]
@@ -95,9 +106,14 @@ pub struct Echoes {
 }
 
 impl Echoes {
-    /// An empty table.
-    pub fn new(rig: &Rig, clock: Clock, keep: Option<Vec<Kind>>) -> Self {
-        Self { rows: Rows::new(rig, clock), kinds: Kind::ALL.map(|kind| wide(kind.name(), KIND_WIDTH)), keep }
+    /// An empty table, with room for the echoes of `readings`.
+    pub fn new(rig: &Rig, clock: Clock, keep: Option<Vec<Kind>>, readings: usize) -> Self {
+        let mut rows = Rows::new(rig, clock);
+        // Where only some kinds are kept, nobody knows how many there will be.
+        if keep.is_none() {
+            rows.reserve(readings, ECHO_NUMBERS);
+        }
+        Self { rows, kinds: Kind::ALL.map(|kind| wide(kind.name(), KIND_WIDTH)), keep }
     }
 
     /// The table as numpy has it.

@@ -46,16 +46,21 @@ fn uniform_arc_spreads_a_mass_of_one_and_frees_what_is_inside() {
 fn what_is_beyond_the_largest_range_frees_up_to_there_and_what_is_too_close_frees_nothing() {
     let beyond = Sensor::with_beam(170.0).reads(0, (0.5, 0.5), 0.0, f64::INFINITY);
     let close = Sensor::with_beam(170.0).reads(0, (0.5, 0.5), 0.0, f64::NEG_INFINITY);
-    let uniform = |limits, reading| evidence(UniformArcs::new(1.0, limits).unwrap(), &[reading]).grid;
-    let elfes = |limits, reading| evidence(Elfes::new(1.0, limits).unwrap(), &[reading]).grid;
-    let himm = |limits, reading| evidence(Himm::new(1.0, limits).unwrap(), &[reading]).grid;
-    let methods: [&dyn Fn(Vec<Limits<f64>>, atm_core::Reading<f64>) -> crate::map::Grid<f64>; 3] =
-        [&uniform, &elfes, &himm];
+    let methods: [fn(Vec<Limits<f64>>) -> Box<dyn Method>; 3] = [
+        |limits| Box::new(UniformArcs::new(1.0, limits).unwrap()),
+        |limits| Box::new(Elfes::new(1.0, limits).unwrap()),
+        |limits| Box::new(Himm::new(1.0, limits).unwrap()),
+    ];
     for method in methods {
-        let freed = method(reach(3.0), beyond);
+        let map = |limits, reading| {
+            let mut method = method(limits);
+            method.take(&reading).unwrap();
+            method.finish().unwrap().unwrap().evidence.unwrap().grid
+        };
+        let freed = map(reach(3.0), beyond);
         assert!(freed.get(cell(0, 3)) < 0.05 && freed.get(cell(0, 4)).is_nan());
-        assert!(method(reach(3.0), close).get(cell(0, 1)).is_nan());
-        assert!(method(vec![Limits::NONE], beyond).get(cell(0, 1)).is_nan(), "no largest range, no free space");
+        assert!(map(reach(3.0), close).get(cell(0, 1)).is_nan());
+        assert!(map(vec![Limits::NONE], beyond).get(cell(0, 1)).is_nan(), "no largest range, no free space");
     }
 }
 

@@ -1,5 +1,7 @@
 //! What can stand on the command line, one file a command.
 
+mod draw;
+mod eval;
 mod fuse;
 mod info;
 mod log;
@@ -9,6 +11,8 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub use self::{
+    draw::{Draw, PanelSpec},
+    eval::Eval,
     fuse::{Emit, Fuse},
     info::Info,
     log::{Empty, Format, LogArgs},
@@ -37,4 +41,8 @@ pub enum Command {
     Plan(Plan),
     /// What is in a log
     Info(Info),
+    /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
+    Eval(Eval),
+    /// Draw walls, path, arcs, crossings and echoes
+    Draw(Box<Draw>),
 }

@@ -74,3 +74,11 @@ pub fn beam(text: &str) -> Result<Beam<f64>, String> {
 pub fn min_angle(text: &str) -> Result<MinAngle<f64>, String> {
     MinAngle::new(units::angle(text).map_err(words)?).map_err(words)
 }
+
+/// `KEY=VALUE`.
+pub fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
+        _ => Err(format!("{text} is not KEY=VALUE")),
+    }
+}

@@ -1,5 +1,11 @@
 //! A TOML document whose every value knows its line and its key, so that errors can name both.
-use std::ops::Range;
+use std::{
+    fs,
+    io::{self, Read},
+    ops::Range,
+    path::Path,
+    sync::Arc,
+};
 
 use toml::{
     Spanned,
@@ -11,16 +17,62 @@ use crate::{
     units::{self, UnitError},
 };
 
-/// The text of a rig file, and the file's name.
+/// The text of a file, and the file's name.
 #[derive(Clone, Copy)]
-pub(super) struct Document<'a> {
-    pub(super) file: &'a str,
-    pub(super) text: &'a str,
+pub(crate) struct Document<'a> {
+    pub(crate) file: &'a str,
+    pub(crate) text: &'a str,
+    pub(crate) kind: &'static Kind,
+}
+
+/// A kind of file that is written in TOML.
+pub(crate) struct Kind {
+    /// What messages call it: `rig`.
+    pub(crate) name: &'static str,
+    /// Those of its kind that need no file.
+    pub(crate) builtin: &'static [&'static str],
+    /// An error of such a file: its name, with the line where known, and the message.
+    pub(crate) error: fn(Arc<str>, String) -> Error,
+}
+
+/// Largest file that is read, in bytes.
+pub(crate) const MAX_FILE: u64 = 16 * 1024 * 1024;
+
+impl Kind {
+    /// Reads a file of this kind, of bounded size even where the system can't tell it (a pipe, a device).
+    pub(crate) fn read(&self, file: &str) -> Result<String> {
+        let io_error = |source| Error::Io { file: file.into(), source };
+        let refuse = |place: String, message: String| Err((self.error)(place.into(), message));
+        if Path::new(file).is_dir() {
+            return refuse(file.to_owned(), format!("is a directory, not a {} file", self.name));
+        }
+        let source = fs::File::open(file).map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => io_error(self.not_found()),
+            _ => io_error(error),
+        })?;
+        let mut bytes = Vec::new();
+        source.take(MAX_FILE + 1).read_to_end(&mut bytes).map_err(io_error)?;
+        if bytes.len() as u64 > MAX_FILE {
+            return refuse(file.to_owned(), format!("larger than {} MiB: no {} file", MAX_FILE >> 20, self.name));
+        }
+        String::from_utf8(bytes).or_else(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            let line = line_of(error.as_bytes(), valid);
+            refuse(format!("{file}:{line}"), format!("not UTF-8 text (byte {valid})"))
+        })
+    }
+
+    /// What to say of a name that is neither built in nor a file.
+    fn not_found(&self) -> io::Error {
+        let (name, builtin) = (self.name, self.builtin.join(", "));
+        let message = format!("no such {name} file, and no built-in {name} of this name ({builtin})");
+        io::Error::new(io::ErrorKind::NotFound, message)
+    }
 }
 
 impl<'a> Document<'a> {
     /// Parses the text; an error names the line.
-    pub(super) fn parse(self) -> Result<DeTable<'a>> {
+    pub(crate) fn parse(self) -> Result<DeTable<'a>> {
         match DeTable::parse(self.text) {
             Ok(root) => Ok(root.into_inner()),
             Err(error) => {
@@ -31,12 +83,12 @@ impl<'a> Document<'a> {
     }
 
     /// An error at a byte of the text, or of the file as a whole.
-    pub(super) fn error(self, byte: Option<usize>, message: String) -> Error {
+    pub(crate) fn error(self, byte: Option<usize>, message: String) -> Error {
         let file = match byte {
             Some(byte) => format!("{}:{}", self.file, line_of(self.text.as_bytes(), byte)),
             None => self.file.to_owned(),
         };
-        Error::Rig { file: file.into(), message }
+        (self.kind.error)(file.into(), message)
     }
 
     fn error_at(self, span: Range<usize>, message: String) -> Error {
@@ -45,14 +97,14 @@ impl<'a> Document<'a> {
 }
 
 /// Line of a byte of a text, from 1.
-pub(super) fn line_of(text: &[u8], byte: usize) -> usize {
+pub(crate) fn line_of(text: &[u8], byte: usize) -> usize {
     let before = text.get(..byte).unwrap_or(text);
     memchr::memchr_iter(b'\n', before).count() + 1
 }
 
 /// One table of the document.
 #[derive(Clone)]
-pub(super) struct Section<'a> {
+pub(crate) struct Section<'a> {
     document: Document<'a>,
     /// Its header as the user writes it; empty for the top level.
     header: String,
@@ -65,12 +117,12 @@ pub(super) struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// The top level of a document.
-    pub(super) fn root(document: Document<'a>, table: &'a DeTable<'a>) -> Self {
+    pub(crate) fn root(document: Document<'a>, table: &'a DeTable<'a>) -> Self {
         Self { document, header: String::new(), prefix: String::new(), table, start: None }
     }
 
     /// Refuses keys that are not in these lists: the first one in the file is named.
-    pub(super) fn only(&self, known: &[&[&str]]) -> Result<()> {
+    pub(crate) fn only(&self, known: &[&[&str]]) -> Result<()> {
         let known = known.concat();
         let unknown = self.table.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else { return Ok(()) };
@@ -81,18 +133,18 @@ impl<'a> Section<'a> {
     }
 
     /// The value of a key, if it is there.
-    pub(super) fn get(&self, key: &str) -> Option<Entry<'a>> {
+    pub(crate) fn get(&self, key: &str) -> Option<Entry<'a>> {
         let (name, value) = self.table.get_key_value(key)?;
         Some(Entry { document: self.document, key: format!("{}{key}", self.prefix), at: name.span(), value })
     }
 
     /// The value of a key that has to be there.
-    pub(super) fn require(&self, key: &str) -> Result<Entry<'a>> {
+    pub(crate) fn require(&self, key: &str) -> Result<Entry<'a>> {
         self.get(key).ok_or_else(|| self.error(format!("`{key}` is missing")))
     }
 
     /// An error of the section as a whole.
-    pub(super) fn error(&self, message: String) -> Error {
+    pub(crate) fn error(&self, message: String) -> Error {
         let place = if self.header.is_empty() { String::new() } else { format!("{}: ", self.header) };
         self.document.error(self.start, format!("{place}{message}"))
     }
@@ -100,7 +152,7 @@ impl<'a> Section<'a> {
 
 /// One value of the document, with its key.
 #[derive(Clone)]
-pub(super) struct Entry<'a> {
+pub(crate) struct Entry<'a> {
     document: Document<'a>,
     /// Dotted, as messages show it.
     key: String,
@@ -111,7 +163,7 @@ pub(super) struct Entry<'a> {
 
 impl<'a> Entry<'a> {
     /// An error of this value: what it has to be.
-    pub(super) fn error(&self, message: &str) -> Error {
+    pub(crate) fn error(&self, message: &str) -> Error {
         let is_table = matches!(self.value.get_ref(), DeValue::Table(_));
         let shown = self.document.text.get(self.value.span()).filter(|_| !is_table);
         let shown = shown.map(|text| format!(" = {}", units::shorten(text))).unwrap_or_default();
@@ -120,7 +172,7 @@ impl<'a> Entry<'a> {
     }
 
     /// Line of the key, from 1. Counts from the top of the file: for messages only.
-    pub(super) fn line(&self) -> usize {
+    pub(crate) fn line(&self) -> usize {
         line_of(self.document.text.as_bytes(), self.at.start)
     }
 
@@ -128,14 +180,14 @@ impl<'a> Entry<'a> {
         Err(self.error(&format!("expected {what}, found {}", type_name(self.value.get_ref()))))
     }
 
-    pub(super) fn text(&self) -> Result<&'a str> {
+    pub(crate) fn text(&self) -> Result<&'a str> {
         match self.value.get_ref() {
             DeValue::String(text) => Ok(text),
             _ => self.expected("a string"),
         }
     }
 
-    pub(super) fn flag(&self) -> Result<bool> {
+    pub(crate) fn flag(&self) -> Result<bool> {
         match self.value.get_ref() {
             DeValue::Boolean(flag) => Ok(*flag),
             _ => self.expected("true or false"),
@@ -143,7 +195,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A whole number of at least 0; one that does not fit counts as the largest that does.
-    pub(super) fn count(&self) -> Result<usize> {
+    pub(crate) fn count(&self) -> Result<usize> {
         match self.value.get_ref() {
             DeValue::Integer(_) => {
                 let value = self.number()?;
@@ -155,23 +207,23 @@ impl<'a> Entry<'a> {
     }
 
     /// A finite number.
-    pub(super) fn number(&self) -> Result<f64> {
+    pub(crate) fn number(&self) -> Result<f64> {
         let Some(number) = number(self.value.get_ref()) else { return self.expected("a number") };
         if number.is_finite() { Ok(number) } else { Err(self.error("must be finite")) }
     }
 
     /// A length in metres: a string with a unit, or a number of metres.
-    pub(super) fn length(&self) -> Result<f64> {
+    pub(crate) fn length(&self) -> Result<f64> {
         self.quantity(units::length)
     }
 
     /// An angle in radians: a string with its unit.
-    pub(super) fn angle(&self) -> Result<f64> {
+    pub(crate) fn angle(&self) -> Result<f64> {
         self.quantity(units::angle)
     }
 
     /// What a parser of units makes of a string, or of a bare number as it stands in the file.
-    pub(super) fn quantity<T>(&self, parse: impl Fn(&str) -> Result<T, UnitError>) -> Result<T> {
+    pub(crate) fn quantity<T>(&self, parse: impl Fn(&str) -> Result<T, UnitError>) -> Result<T> {
         let parsed = match self.value.get_ref() {
             DeValue::String(text) => parse(text),
             DeValue::Float(_) | DeValue::Integer(_) => parse(&shortest(self.number()?)),
@@ -181,7 +233,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The table under the key.
-    pub(super) fn section(&self) -> Result<Section<'a>> {
+    pub(crate) fn section(&self) -> Result<Section<'a>> {
         match self.value.get_ref() {
             DeValue::Table(table) => Ok(self.subsection(format!("[{}]", self.key), table, self.at.start)),
             _ => self.expected(&format!("a table ([{}])", self.key)),
@@ -189,7 +241,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The tables of an array of tables, at least one.
-    pub(super) fn sections(&self) -> Result<Vec<Section<'a>>> {
+    pub(crate) fn sections(&self) -> Result<Vec<Section<'a>>> {
         let what = format!("tables, each under [[{}]]", self.key);
         let DeValue::Array(array) = self.value.get_ref() else { return self.expected(&what) };
         if array.is_empty() {
@@ -207,7 +259,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The values of an array.
-    pub(super) fn items(&self) -> Result<Vec<Entry<'a>>> {
+    pub(crate) fn items(&self) -> Result<Vec<Entry<'a>>> {
         let DeValue::Array(array) = self.value.get_ref() else { return self.expected("an array") };
         let item = |value: &'a Spanned<DeValue<'a>>| Self {
             document: self.document,

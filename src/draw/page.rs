@@ -1,0 +1,260 @@
+//! The page: titles, panels side by side, what the marks mean, and how long a metre is.
+use std::fmt::Write;
+
+use atm_core::Point2;
+
+use super::{
+    frame::Frame,
+    legend::{self, Entry},
+    letters::Weight,
+    panel::{self, View},
+    scene::Scene,
+    style::{self, Names},
+    svg::{escaped, text_of},
+};
+
+/// Width of a picture in pixels where none is asked for: that of a page of a README.
+pub const WIDTH: f64 = 900.0;
+/// Smallest and largest side of a picture, in pixels.
+pub const SIDES: (f64, f64) = (64.0, 16_384.0);
+/// Heights that a panel may have of itself, in parts of its width.
+const ASPECTS: (f64, f64) = (0.25, 1.25);
+const MARGIN: f64 = 16.0;
+/// Room between two panels.
+const GAP: f64 = 20.0;
+const LINE: f64 = 20.0;
+/// Sizes of letters.
+pub(super) const PLAIN: f64 = 13.0;
+const TITLE: f64 = 16.0;
+
+/// A scene with its heading.
+#[derive(Debug, Clone, Default)]
+pub struct Panel {
+    /// A line in bold letters; none where it is empty.
+    pub title: String,
+    /// A line below it; none where it is empty.
+    pub subtitle: String,
+    /// What is to be seen.
+    pub scene: Scene,
+}
+
+/// A picture: one panel or several, which all show the same part of the plane.
+#[derive(Debug, Clone, Default)]
+pub struct Picture {
+    /// Over all panels; none where it is empty.
+    pub title: String,
+    /// From left to right; at least one is drawn.
+    pub panels: Vec<Panel>,
+    /// What part of the plane they show; where it is not given, what holds their points but for a few stray ones.
+    pub frame: Option<Frame>,
+    /// Width in pixels, brought within [`SIDES`]; [`WIDTH`] where it is not given.
+    pub width: Option<f64>,
+    /// Height in pixels, brought within [`SIDES`]; what the frame needs where it is not given.
+    pub height: Option<f64>,
+}
+
+/// The picture as it grows.
+pub(super) struct Ink {
+    pub(super) svg: String,
+    /// Letters become outlines: what is to be made pixels of needs no fonts then.
+    outlines: bool,
+}
+
+/// Where a text stands at its point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+impl Ink {
+    /// Writes a line of text; `colour` is a class of the style sheet, or empty.
+    pub(super) fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, font: Font, colour: &str, words: &str) {
+        let (weight, size, class) = font.parts();
+        if self.outlines {
+            let shift = match anchor {
+                Anchor::Start => 0.0,
+                Anchor::Middle => 0.5,
+                Anchor::End => 1.0,
+            };
+            let d = weight.outline(words, x - shift * weight.width(words, size), y, size);
+            let _ = writeln!(self.svg, "<path class=\"t {class} {colour}\" d=\"{d}\"/>");
+            return;
+        }
+        let anchor = match anchor {
+            Anchor::Start => "",
+            Anchor::Middle => "m",
+            Anchor::End => "e",
+        };
+        let classes =
+            [class, colour, anchor].into_iter().filter(|class| !class.is_empty()).collect::<Vec<_>>().join(" ");
+        let attribute = if classes.is_empty() { String::new() } else { format!(" class=\"{classes}\"") };
+        let (x, y) = (text_of(x), text_of(y));
+        let _ = writeln!(self.svg, "<text{attribute} x=\"{x}\" y=\"{y}\">{}</text>", escaped(words));
+    }
+}
+
+/// The letters of a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Font {
+    Plain,
+    Title,
+    Dimension,
+}
+
+impl Font {
+    /// Weight, size in pixels, and class in the style sheet.
+    pub(super) fn parts(self) -> (Weight, f64, &'static str) {
+        match self {
+            Self::Plain => (Weight::Regular, PLAIN, ""),
+            Self::Title => (Weight::Bold, TITLE, "b"),
+            Self::Dimension => (Weight::Bold, 15.0, "d"),
+        }
+    }
+
+    pub(super) fn width(self, words: &str) -> f64 {
+        let (weight, size, _) = self.parts();
+        weight.width(words, size)
+    }
+}
+
+impl Picture {
+    /// The picture as SVG: the same bytes for the same picture, text as text.
+    pub fn svg(&self) -> String {
+        self.draw(false).0
+    }
+
+    /// The picture as SVG whose letters are outlines, and its width and height.
+    pub(super) fn outlined(&self) -> (String, f64, f64) {
+        self.draw(true)
+    }
+
+    fn draw(&self, outlines: bool) -> (String, f64, f64) {
+        let names = Names::of(self.panels.iter().flat_map(|panel| &panel.scene.layers));
+        let entries = legend::entries(self, &names);
+        let layout = Layout::of(self, &entries);
+        let mut ink = Ink { svg: String::new(), outlines };
+        let (width, height) = (text_of(layout.width), text_of(layout.height));
+        let size = format!("width=\"{width}\" height=\"{height}\"");
+        let _ = writeln!(ink.svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" {size}>");
+        let title = if self.title.is_empty() { "atm" } else { &self.title };
+        let _ = writeln!(ink.svg, "<title>{}</title>\n<style>{}</style>", escaped(title), style::SHEET);
+        let _ = writeln!(ink.svg, "<rect class=\"paper\" {size}/>");
+        self.head(&layout, &mut ink);
+        let empty = [Panel::default()];
+        let panels = if self.panels.is_empty() { &empty[..] } else { &self.panels };
+        for (index, panel) in panels.iter().enumerate() {
+            layout.panel(index, panel, &names, &mut ink);
+        }
+        legend::draw(&entries, &layout, &mut ink);
+        ink.svg.push_str("</svg>\n");
+        (ink.svg, layout.width, layout.height)
+    }
+
+    fn head(&self, layout: &Layout, ink: &mut Ink) {
+        let line = |room: f64, font: Font, words: &str| {
+            let (weight, size, _) = font.parts();
+            weight.fitted(words, size, room)
+        };
+        if !self.title.is_empty() {
+            let words = line(layout.width - 2.0 * MARGIN, Font::Title, &self.title);
+            ink.text((MARGIN, MARGIN + 12.0), Anchor::Start, Font::Title, "", &words);
+        }
+        for (index, panel) in self.panels.iter().enumerate() {
+            let (left, mut y) = (layout.left(index), layout.headings + 12.0);
+            for (words, font) in [(&panel.title, Font::Title), (&panel.subtitle, Font::Plain)] {
+                if !words.is_empty() {
+                    let words = line(layout.panel_width, font, words);
+                    ink.text((left, y), Anchor::Start, font, "", &words);
+                }
+                y += LINE;
+            }
+        }
+    }
+
+    fn frame(&self) -> Frame {
+        let found = || {
+            let points: Vec<Point2<f64>> = self.panels.iter().flat_map(|panel| panel.scene.extent()).collect();
+            Frame::around(&points)
+        };
+        self.frame.or_else(found).unwrap_or(Frame::EMPTY)
+    }
+}
+
+/// Where everything goes, in pixels.
+pub(super) struct Layout {
+    pub(super) width: f64,
+    pub(super) height: f64,
+    /// Top of the panels' headings.
+    headings: f64,
+    panel_width: f64,
+    view: View,
+    /// Whether somebody chose what part of the plane to show.
+    chosen: bool,
+    /// Middle of the legend's first line.
+    pub(super) legend: f64,
+}
+
+impl Layout {
+    fn of(picture: &Picture, entries: &[Entry]) -> Self {
+        let side = |side: f64| if side.is_finite() { side.round().clamp(SIDES.0, SIDES.1) } else { WIDTH };
+        let width = side(picture.width.unwrap_or(WIDTH));
+        let count = picture.panels.len().max(1) as f64;
+        let panel_width = ((width - 2.0 * MARGIN - (count - 1.0) * GAP) / count).max(1.0);
+        let headings = MARGIN + if picture.title.is_empty() { 0.0 } else { LINE + 4.0 };
+        let has = |line: fn(&Panel) -> bool| if picture.panels.iter().any(line) { LINE } else { 0.0 };
+        let top = headings + has(|panel| !panel.title.is_empty()) + has(|panel| !panel.subtitle.is_empty());
+        let foot = 10.0 + LINE * legend::lines(entries, width - 2.0 * MARGIN) as f64 + 8.0;
+        let frame = picture.frame();
+        let aspect = frame.height() / frame.width();
+        let own = (panel_width * aspect.clamp(ASPECTS.0, ASPECTS.1)).round();
+        let height = picture.height.map_or_else(|| side(top + own + foot), side);
+        let panel_height = (height - top - foot).max(1.0);
+        let frame = frame.with_aspect(panel_width / panel_height);
+        let view = View { frame, left: MARGIN, top, scale: panel_width / frame.width() };
+        let chosen = picture.frame.is_some();
+        Self { width, height, headings, panel_width, view, chosen, legend: top + panel_height + 10.0 + LINE / 2.0 }
+    }
+
+    fn left(&self, index: usize) -> f64 {
+        MARGIN + index as f64 * (self.panel_width + GAP)
+    }
+
+    /// Pixels in a metre.
+    pub(super) fn scale(&self) -> f64 {
+        self.view.scale
+    }
+
+    /// Left and right end of the legend.
+    pub(super) fn sides(&self) -> (f64, f64) {
+        (MARGIN, self.width - MARGIN)
+    }
+
+    /// Draws one panel.
+    fn panel(&self, index: usize, panel: &Panel, names: &Names<'_>, ink: &mut Ink) {
+        let view = View { left: self.left(index), ..self.view };
+        let (left, top) = (text_of(view.left), text_of(view.top));
+        let (width, height) = (text_of(view.width()), text_of(view.height()));
+        let rectangle = format!("x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"");
+        let _ = writeln!(ink.svg, "<clipPath id=\"p{index}\"><rect {rectangle}/></clipPath>");
+        let _ = writeln!(ink.svg, "<g clip-path=\"url(#p{index})\">");
+        let outside = panel::draw(&panel.scene, &view, names, ink);
+        let _ = writeln!(ink.svg, "</g>\n<rect class=\"border\" {rectangle}/>");
+        if panel.scene.is_empty() {
+            let middle = (view.left + view.width() / 2.0, view.top + view.height() / 2.0);
+            ink.text(middle, Anchor::Middle, Font::Plain, "", "nothing to draw");
+        }
+        // What part to show was chosen: that some is not shown is no news then.
+        if outside > 0 && !self.chosen {
+            let corner = (view.left + view.width() - 6.0, view.top + view.height() - 8.0);
+            ink.text(
+                corner,
+                Anchor::End,
+                Font::Plain,
+                "",
+                &format!("{outside} {} outside", if outside == 1 { "mark lies" } else { "marks lie" }),
+            );
+        }
+    }
+}
