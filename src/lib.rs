@@ -3,6 +3,7 @@
 pub use atm_core as core;
 
 pub mod baseline;
+pub mod compare;
 pub mod draw;
 pub mod error;
 pub mod eval;

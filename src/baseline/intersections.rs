@@ -20,7 +20,7 @@ impl Method for Intersections {
     fn take(&mut self, reading: &Reading<f64>) -> Result<()> {
         if let Some(sight) = Sight::new(reading) {
             for earlier in self.history.newest_first() {
-                self.points.extend(common_points(&sight, &earlier).map(|point| Mark::of(&sight, point)));
+                self.points.extend(common_points(&sight, earlier).map(|point| Mark::of(&sight, point)));
             }
             if self.points.len() > MOST_POINTS {
                 return Err(Error::Map { message: format!("more than {MOST_POINTS} intersections") });

@@ -19,6 +19,8 @@ pub struct Sight {
     pub robot: Point2<f64>,
     /// Half the beam, in radians.
     pub half_beam: f64,
+    /// Its cosine.
+    cos_half: f64,
     /// The reading, in metres.
     pub range: f64,
     /// The range resolution δ, in metres.
@@ -35,6 +37,7 @@ impl Sight {
             boresight: Vector2::new(reading.pose.rotation.re, reading.pose.rotation.im),
             robot: reading.robot,
             half_beam: reading.beam.field_of_view() / 2.0,
+            cos_half: libm::cos(reading.beam.field_of_view() / 2.0),
             range: reading.range.echo()?,
             resolution: reading.range_resolution.metres(),
         })
@@ -60,7 +63,8 @@ impl Sight {
 
     /// Whether a point lies within the beam, its edges included.
     pub fn sees(&self, point: Point2<f64>) -> bool {
-        self.azimuth(point).abs() <= self.half_beam
+        let offset = point - self.position;
+        self.boresight.dot(&offset) >= self.cos_half * offset.norm()
     }
 
     /// The direction of the boresight in the fixed frame, in radians.

@@ -21,7 +21,7 @@ impl TriangulationFusion {
     pub const HITS: u32 = 3;
 
     /// The estimate for `sight` from the earlier readings, and how many hits it has.
-    fn triangulate(sight: &Sight, earlier: &[Sight]) -> Option<(Point2<f64>, u32)> {
+    fn triangulate<'a>(sight: &Sight, earlier: impl Iterator<Item = &'a Sight>) -> Option<(Point2<f64>, u32)> {
         let mut estimate: Option<(Point2<f64>, u32)> = None;
         for other in earlier {
             // Of two intersections the one nearer to the estimate; without one, to the boresight.
@@ -44,7 +44,7 @@ impl TriangulationFusion {
 impl Method for TriangulationFusion {
     fn take(&mut self, reading: &Reading<f64>) -> Result<()> {
         if let Some(sight) = Sight::new(reading)
-            && let Some((point, hits)) = Self::triangulate(&sight, &self.history.newest_first())
+            && let Some((point, hits)) = Self::triangulate(&sight, self.history.newest_first())
             && hits >= Self::HITS
         {
             self.points.push(Mark::of(&sight, point));

@@ -63,6 +63,11 @@ impl<'a> Judge<'a> {
         Self { world, truth, observable }
     }
 
+    /// A judge for a drive of [`RIG`] along the world's own path, as [`evaluate`] has it.
+    pub fn of_world(world: &'a World, truth: Option<&'a Truth>) -> Self {
+        Self::new(world, truth, &views(world))
+    }
+
     /// The scores of these points.
     pub fn scores(&self, estimates: &[Estimate]) -> Scores {
         let mut kinds: BTreeMap<&str, Vec<&Estimate>> = BTreeMap::new();
@@ -106,7 +111,7 @@ impl<'a> Judge<'a> {
 ///
 /// For a drive with another rig or along another way, see [`Judge`].
 pub fn evaluate(estimates: &[Estimate], world: &World, truth: Option<&Truth>) -> Scores {
-    Judge::new(world, truth, &views(world)).scores(estimates)
+    Judge::of_world(world, truth).scores(estimates)
 }
 
 /// The built-in rig whose beams look around where nothing is said of another.

@@ -1,5 +1,6 @@
 //! What can stand on the command line, one file a command.
 
+mod compare;
 mod draw;
 mod eval;
 mod fuse;
@@ -11,6 +12,7 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub use self::{
+    compare::Compare,
     draw::{Draw, PanelSpec},
     eval::Eval,
     fuse::{Emit, Fuse},
@@ -43,6 +45,8 @@ pub enum Command {
     Info(Info),
     /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
     Eval(Eval),
+    /// Every method on one log, side by side
+    Compare(Box<Compare>),
     /// Draw walls, path, arcs, crossings and echoes
     Draw(Box<Draw>),
 }

@@ -3,6 +3,7 @@
 use std::{fmt::Display, str::FromStr};
 
 use atm::{
+    compare::Name,
     core::{Beam, Kind, MinAngle, RangeResolution, Travel},
     storage::LatestSlots,
     units,
@@ -81,4 +82,9 @@ pub fn setting(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
         _ => Err(format!("{text} is not KEY=VALUE")),
     }
+}
+
+pub fn method(text: &str) -> Result<Name, String> {
+    let known = || Name::ALL.map(Name::word).join(", ");
+    Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
 }

@@ -1,5 +1,6 @@
 //! One file a command, each a thin adapter over the library.
 
+pub mod compare;
 pub mod draw;
 pub mod eval;
 pub mod fuse;
@@ -32,6 +33,14 @@ const NO_MCAP: &str = "MCAP is not supported yet; atm reads and writes text tabl
 /// The rig that was asked for, if one was.
 fn rig(args: &LogArgs) -> Result<Option<Arc<Rig>>, Failure> {
     Ok(args.rig.as_deref().map(Rig::load).transpose()?.map(Arc::new))
+}
+
+/// What is said where a rig is needed and not named.
+fn no_rig() -> Failure {
+    Failure::Usage(format!(
+        "a table does not say which sensors made it: name the rig with --rig, a built-in one ({}) or a TOML file",
+        Rig::BUILTIN.join(", ")
+    ))
 }
 
 /// Opens the log, and refuses what can't be read.
