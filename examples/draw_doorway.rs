@@ -18,12 +18,24 @@ use atm::{
     },
     pipeline::{Defaults, EchoSink, Emit, SensorModel, Settings, fuse, readings},
     rig::{Rig, TableFormat},
-    world::rough::{
-        DOORWAY_SEED, OPENING, OPENING_END, OPENING_START, RING_RADIUS, WALL_DISTANCE, doorway_world, inches,
-    },
+    simulate::Scene,
+    world::World,
 };
 
 const LOG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/doorway.csv");
+/// The sample's world, in metres: an opening of 36 in, 70 in from the path.
+const SEED: u64 = 1;
+const OPENING: f64 = inches(36.0);
+const OPENING_START: f64 = inches(102.0);
+const OPENING_END: f64 = inches(138.0);
+const WALL_DISTANCE: f64 = inches(70.0);
+/// Radius of the Nomad's ring of sensors.
+const RING_RADIUS: f64 = inches(9.0);
+
+const fn inches(n: f64) -> f64 {
+    n * 254.0 / 10_000.0
+}
+
 /// H of Sec. IV-D.
 const HISTORY: usize = 10;
 /// How far from the wall's line a point still says that there is wall.
@@ -40,6 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The readings of the log that are echoes, and what they were fused to.
 struct Drive {
+    bumps: Vec<Point2<f64>>,
     readings: Vec<Reading<f64>>,
     fused: Fused,
 }
@@ -83,7 +96,10 @@ impl Drive {
         };
         let mut fused = Fused::default();
         fuse(&mut open(&rig)?, None, &sensors, &settings, &mut fused, &mut |_| {}).1?;
-        Ok(Self { readings: echoing(&mut open(&rig)?, &sensors)?, fused })
+        let world = World::load("doorway", &[])?;
+        let jambs = world.openings().iter().flat_map(|opening| opening.jambs).collect::<Vec<_>>();
+        let bumps = Scene::new(world, SEED).bumps().iter().map(|bump| bump.sides[0]).chain(jambs).collect();
+        Ok(Self { bumps, readings: echoing(&mut open(&rig)?, &sensors)?, fused })
     }
 
     /// What a map marks that takes an echo to lie ahead: every reading's cone centre.
@@ -180,7 +196,7 @@ fn picture(drive: &Drive) -> Result<String, fmt::Error> {
 fn centers_panel(panel: &mut Panel<'_>, drive: &Drive) -> fmt::Result {
     let centers = drive.centers();
     panel.heading("Centre of the cone", "what range layers see: each echo straight ahead")?;
-    panel.walls()?;
+    panel.walls(&drive.bumps)?;
     panel.free(widest_gap(&centers), ORANGE)?;
     let ring = SHOWN_SENSOR - 1..=SHOWN_SENSOR + 3;
     for reading in ring.filter_map(|sensor| drive.reading(SHOWN_SWEEP, sensor)) {
@@ -198,7 +214,7 @@ fn centers_panel(panel: &mut Panel<'_>, drive: &Drive) -> fmt::Result {
 fn atm_panel(panel: &mut Panel<'_>, drive: &Drive) -> fmt::Result {
     let (medians, singles) = (drive.echoes(Kind::Median), drive.echoes(Kind::Single));
     panel.heading("atm: median and single crossings", "the same readings, placed by the median crossing")?;
-    panel.walls()?;
+    panel.walls(&drive.bumps)?;
     panel.free(widest_gap(&[&medians[..], &singles[..]].concat()), BLUE)?;
     if let Some(shown) = drive.reading(SHOWN_SWEEP, SHOWN_SENSOR) {
         panel.cone(shown, "shown")?;
@@ -265,13 +281,10 @@ impl Panel<'_> {
     }
 
     /// The walls as they are, the opening's width and the path.
-    fn walls(&mut self) -> fmt::Result {
+    fn walls(&mut self, bumps: &[Point2<f64>]) -> fmt::Result {
         self.line("wall", (X_RANGE.0, WALL_DISTANCE), (OPENING_START, WALL_DISTANCE))?;
         self.line("wall", (OPENING_END, WALL_DISTANCE), (X_RANGE.1, WALL_DISTANCE))?;
-        let world = doorway_world(DOORWAY_SEED);
-        let bumps: Vec<_> =
-            world.walls.iter().flat_map(|wall| wall.scatterers()).chain(&world.edges).copied().collect();
-        self.marks("bump", &bumps)?;
+        self.marks("bump", bumps)?;
         let words = format!("opening: {}", length(OPENING));
         self.dimension((OPENING_START, OPENING_END), 2.68, "middle", words)?;
         self.line("path", (X_RANGE.0, 0.0), (X_RANGE.1, 0.0))

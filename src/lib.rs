@@ -12,6 +12,7 @@ pub mod log;
 pub mod map;
 pub mod pipeline;
 pub mod rig;
+pub mod simulate;
 pub mod stamp;
 pub mod storage;
 pub mod summary;

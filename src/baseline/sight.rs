@@ -20,7 +20,7 @@ pub struct Sight {
     /// Half the beam, in radians.
     pub half_beam: f64,
     /// Its cosine.
-    cos_half: f64,
+    pub(super) cos_half: f64,
     /// The reading, in metres.
     pub range: f64,
     /// The range resolution δ, in metres.
@@ -46,13 +46,6 @@ impl Sight {
     /// The middle of its arc.
     pub fn middle(&self) -> Point2<f64> {
         self.position + self.boresight * self.range
-    }
-
-    /// The point of its arc at an angle counter-clockwise from the boresight, in radians.
-    pub fn at(&self, azimuth: f64) -> Point2<f64> {
-        let (sin, cos) = libm::sincos(azimuth);
-        let aside = Vector2::new(-self.boresight.y, self.boresight.x);
-        self.position + (self.boresight * cos + aside * sin) * self.range
     }
 
     /// The angle of a point's direction, counter-clockwise from the boresight, in radians.

@@ -12,6 +12,7 @@ pub mod output;
 pub mod poses;
 pub mod table;
 pub mod truth;
+pub mod writer;
 
 use std::{fs, io, sync::Arc};
 

@@ -11,8 +11,10 @@ pub const PAPER_SPEED: f64 = 0.127;
 pub const PAPER_RATE: f64 = 1.0;
 /// Steps of a pose as it is driven and logged: a nanometre and a nanoradian, so that logs hold short decimals.
 const STEPS: f64 = 1e9;
-/// Points in which a wave is drawn.
-const DRAWN: u32 = 512;
+/// Nanoseconds in a second.
+const NANOSECONDS: f64 = 1e9;
+/// Pieces in which a wave is drawn.
+const DRAWN: f64 = 64.0;
 
 /// A trajectory, its speed, and the rate of the sweeps.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,8 +54,8 @@ pub enum Course {
         yaw: f64,
         /// How far it turns, counter-clockwise; negative for clockwise.
         turn: f64,
-        /// How fast, in radians per second, above 0.
-        turn_rate: f64,
+        /// How far from one sweep to the next, above 0.
+        step: f64,
     },
     /// Straight from each point to the next, looking ahead, turning at once.
     Waypoints(Vec<Point2<f64>>),
@@ -75,22 +77,12 @@ impl Path {
         self.rate
     }
 
-    /// The same line at another speed, in metres per second, which has to be positive.
-    pub fn with_speed(self, speed: f64) -> Self {
-        Self { speed, ..self }
-    }
-
-    /// The same line with another rate of sweeps, in hertz, which has to be positive.
-    pub fn with_rate(self, rate: f64) -> Self {
-        Self { rate, ..self }
-    }
-
     /// Time in nanoseconds and pose of every sweep, from 0 on; the last one is at the end of the line or before it.
     pub fn sweeps(&self) -> impl Iterator<Item = (i64, Pose)> {
         (0..self.sweep_count()).map(|sweep| {
             let seconds = sweep as f64 / self.rate;
-            let pose = self.course.pose(self.progress_per_second() * seconds);
-            ((seconds * STEPS).round() as i64, pose)
+            let pose = self.course.pose(self.step() * sweep as f64);
+            ((seconds * NANOSECONDS).round() as i64, pose)
         })
     }
 
@@ -98,9 +90,9 @@ impl Path {
     pub fn sweep_count(&self) -> u64 {
         /// What a length may lack of a whole number of steps by rounding.
         const SLACK: f64 = 1e-6;
-        let steps = self.course.length() * self.rate / self.progress_per_second();
-        // Saturates.
-        1 + (steps + SLACK).floor() as u64
+        let steps = self.course.length() / self.step();
+        // The conversion saturates, too.
+        ((steps + SLACK).floor() as u64).saturating_add(1)
     }
 
     /// The line as a polyline of at least one point.
@@ -109,21 +101,21 @@ impl Path {
             Course::Straight { from, to } => vec![*from, *to],
             Course::Turning { at, .. } => vec![*at],
             Course::Waypoints(points) => points.clone(),
-            Course::Weaving { .. } => {
-                let step = self.course.length() / f64::from(DRAWN);
-                (0..=DRAWN)
-                    .map(|i| self.course.pose(step * f64::from(i)))
-                    .map(|pose| Point2::new(pose.x, pose.y))
-                    .collect()
+            Course::Weaving { wavelength, .. } => {
+                let length = self.course.length();
+                let pieces = (length / wavelength * DRAWN).ceil();
+                let pose = |piece: u32| self.course.pose(length * f64::from(piece) / pieces);
+                // Saturates; a checked path has no more than a thousand waves.
+                (0..=pieces as u32).map(pose).map(|pose| Point2::new(pose.x, pose.y)).collect()
             }
         }
     }
 
-    /// Metres along the line in a second; radians where the robot only turns.
-    fn progress_per_second(&self) -> f64 {
+    /// Metres along the line from one sweep to the next; radians where the robot only turns.
+    fn step(&self) -> f64 {
         match self.course {
-            Course::Turning { turn_rate, .. } => turn_rate,
-            _ => self.speed,
+            Course::Turning { step, .. } => step,
+            _ => self.speed / self.rate,
         }
     }
 }
@@ -152,7 +144,7 @@ impl Course {
             Self::Turning { at, yaw, turn, .. } => (*at, yaw + turn.signum() * progress),
             Self::Waypoints(points) => on_legs(points, progress),
         };
-        Pose { x: rounded(at.x), y: rounded(at.y), yaw: rounded(yaw) }
+        rounded(Pose { x: at.x, y: at.y, yaw })
     }
 }
 
@@ -182,7 +174,8 @@ fn on_legs(points: &[Point2<f64>], progress: f64) -> (Point2<f64>, f64) {
     last
 }
 
-/// The nearest whole number of nanometres or nanoradians.
-fn rounded(value: f64) -> f64 {
-    (value * STEPS).round() / STEPS
+/// The nearest pose in whole nanometres and nanoradians.
+pub(crate) fn rounded(pose: Pose) -> Pose {
+    let rounded = |value: f64| (value * STEPS).round() / STEPS;
+    Pose { x: rounded(pose.x), y: rounded(pose.y), yaw: rounded(pose.yaw) }
 }

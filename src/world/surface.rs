@@ -1,5 +1,5 @@
 //! What stands in a world: walls and poles, and what they are made of.
-use std::fmt;
+use std::{f64::consts::TAU, fmt};
 
 use nalgebra::{Point2, Vector2};
 use parry2d_f64::{
@@ -84,6 +84,14 @@ impl Shape {
                 let from_center = parry((point - center).into());
                 Ball::new(radius).distance_to_local_point(from_center, false).abs()
             }
+        }
+    }
+
+    /// Length of a wall, or of the way around a pole, in metres.
+    pub fn length(&self) -> f64 {
+        match *self {
+            Self::Segment { from, to } => (to - from).norm(),
+            Self::Circle { radius, .. } => TAU * radius,
         }
     }
 

@@ -67,6 +67,7 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
         Command::Eval(args) => command::eval::run(args),
         Command::Compare(args) => command::compare::run(args),
         Command::Draw(args) => command::draw::run(args),
+        Command::Simulate(args) => command::simulate::run(args),
     };
     match result {
         Ok(Outcome::Done) | Err(Failure::ReaderGone) => 0,

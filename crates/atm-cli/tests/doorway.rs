@@ -5,8 +5,12 @@
 
 mod support;
 
-use atm::world::rough::{OPENING_END, OPENING_START, WALL_DISTANCE};
 use support::*;
+
+/// The sample's world, in metres: where along the wall the opening begins and ends, and the wall's distance.
+const OPENING_START: f64 = 102.0 * INCH;
+const OPENING_END: f64 = 138.0 * INCH;
+const WALL_DISTANCE: f64 = 70.0 * INCH;
 
 /// How far from the wall's line a point may lie to count as part of the wall.
 const BAND: f64 = 12.0 * INCH;

@@ -7,6 +7,7 @@ mod fuse;
 mod info;
 mod log;
 mod plan;
+mod simulate;
 mod values;
 
 use clap::{Parser, Subcommand};
@@ -19,6 +20,7 @@ pub use self::{
     info::Info,
     log::{Empty, Format, LogArgs},
     plan::Plan,
+    simulate::Simulate,
 };
 
 /// Sharp echo points from wide-beam range sensors on a moving robot: the arc-transversal median.
@@ -49,4 +51,6 @@ pub enum Command {
     Compare(Box<Compare>),
     /// Draw walls, path, arcs, crossings and echoes
     Draw(Box<Draw>),
+    /// Drive a robot through a world and write its log
+    Simulate(Simulate),
 }

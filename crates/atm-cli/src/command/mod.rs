@@ -6,6 +6,7 @@ pub mod eval;
 pub mod fuse;
 pub mod info;
 pub mod plan;
+pub mod simulate;
 
 use std::sync::Arc;
 
