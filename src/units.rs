@@ -19,6 +19,11 @@ const MINUTE: u64 = 60;
 /// Characters of the user's text that a message repeats.
 const SHOWN: usize = 40;
 
+/// Metres in `n` inches; for a whole `n` the double nearest to the decimal, so that it prints as few digits.
+pub const fn inches(n: f64) -> f64 {
+    n * 254.0 / 10_000.0
+}
+
 /// Why a text is no quantity of the kind asked for.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]

@@ -5,6 +5,7 @@ use std::{collections::HashMap, sync::Arc};
 use atm_core::{Limits, Meaning, Point2, Reading};
 
 use crate::{
+    draw::Thinned,
     error::{Error, Problem, Result},
     intake::{AnyTrack, Consumer, SensorModel, read},
     log::{Next, Row, Source, View},
@@ -21,7 +22,7 @@ pub struct Recording {
     ids: Vec<Arc<str>>,
     sensors: Vec<SensorModel>,
     parts: Vec<Vec<Row>>,
-    views: Vec<View>,
+    views: Thinned<View>,
     readings: u64,
     /// What was counted while it was read.
     pub summary: Summary,
@@ -62,8 +63,8 @@ impl Recording {
         self.readings
     }
 
-    /// Where each reading was taken from, and what could be seen from there.
-    pub fn views(&self) -> &[View] {
+    /// Where the readings were taken from, and what could be seen from there; of very many, evenly spaced ones.
+    pub const fn views(&self) -> &Thinned<View> {
         &self.views
     }
 

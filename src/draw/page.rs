@@ -23,9 +23,6 @@ const MARGIN: f64 = 16.0;
 /// Room between two panels.
 const GAP: f64 = 20.0;
 const LINE: f64 = 20.0;
-/// Sizes of letters.
-pub(super) const PLAIN: f64 = 13.0;
-const TITLE: f64 = 16.0;
 
 /// A scene with its heading.
 #[derive(Debug, Clone, Default)]
@@ -70,28 +67,41 @@ pub(super) enum Anchor {
 
 impl Ink {
     /// Writes a line of text; `colour` is a class of the style sheet, or empty.
-    pub(super) fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, font: Font, colour: &str, words: &str) {
+    pub(super) fn text(&mut self, at: (f64, f64), anchor: Anchor, font: Font, colour: &str, words: &str) {
+        self.turned_text(at, 0.0, anchor, font, colour, words);
+    }
+
+    /// The same, turned clockwise about its point by an angle in degrees.
+    pub(super) fn turned_text(
+        &mut self,
+        (x, y): (f64, f64),
+        turn: f64,
+        anchor: Anchor,
+        font: Font,
+        colour: &str,
+        words: &str,
+    ) {
         let (weight, size, class) = font.parts();
-        if self.outlines {
-            let shift = match anchor {
-                Anchor::Start => 0.0,
-                Anchor::Middle => 0.5,
-                Anchor::End => 1.0,
-            };
-            let d = weight.outline(words, x - shift * weight.width(words, size), y, size);
-            let _ = writeln!(self.svg, "<path class=\"t {class} {colour}\" d=\"{d}\"/>");
-            return;
-        }
-        let anchor = match anchor {
-            Anchor::Start => "",
-            Anchor::Middle => "m",
-            Anchor::End => "e",
+        let (share, anchor) = match anchor {
+            Anchor::Start => (0.0, ""),
+            Anchor::Middle => (0.5, "m"),
+            Anchor::End => (1.0, "e"),
         };
-        let classes =
-            [class, colour, anchor].into_iter().filter(|class| !class.is_empty()).collect::<Vec<_>>().join(" ");
-        let attribute = if classes.is_empty() { String::new() } else { format!(" class=\"{classes}\"") };
+        let outline = self.outlines.then(|| weight.outline(words, x - share * weight.width(words, size), y, size));
+        let letters = if self.outlines { "t" } else { anchor };
+        let classes: Vec<_> = [letters, class, colour].into_iter().filter(|class| !class.is_empty()).collect();
+        let mut attributes = String::new();
+        if !classes.is_empty() {
+            let _ = write!(attributes, " class=\"{}\"", classes.join(" "));
+        }
         let (x, y) = (text_of(x), text_of(y));
-        let _ = writeln!(self.svg, "<text{attribute} x=\"{x}\" y=\"{y}\">{}</text>", escaped(words));
+        if turn != 0.0 {
+            let _ = write!(attributes, " transform=\"rotate({} {x} {y})\"", text_of(turn));
+        }
+        let _ = match outline {
+            Some(d) => writeln!(self.svg, "<path{attributes} d=\"{d}\"/>"),
+            None => writeln!(self.svg, "<text{attributes} x=\"{x}\" y=\"{y}\">{}</text>", escaped(words)),
+        };
     }
 }
 
@@ -99,7 +109,10 @@ impl Ink {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Font {
     Plain,
+    /// Of the whole picture.
     Title,
+    /// Of one panel.
+    Heading,
     Dimension,
 }
 
@@ -107,8 +120,9 @@ impl Font {
     /// Weight, size in pixels, and class in the style sheet.
     pub(super) fn parts(self) -> (Weight, f64, &'static str) {
         match self {
-            Self::Plain => (Weight::Regular, PLAIN, ""),
-            Self::Title => (Weight::Bold, TITLE, "b"),
+            Self::Plain => (Weight::Regular, 13.0, ""),
+            Self::Title => (Weight::Bold, 19.0, "t1"),
+            Self::Heading => (Weight::Bold, 16.0, "t2"),
             Self::Dimension => (Weight::Bold, 15.0, "d"),
         }
     }
@@ -159,11 +173,11 @@ impl Picture {
         };
         if !self.title.is_empty() {
             let words = line(layout.width - 2.0 * MARGIN, Font::Title, &self.title);
-            ink.text((MARGIN, MARGIN + 12.0), Anchor::Start, Font::Title, "", &words);
+            ink.text((MARGIN, MARGIN + 14.0), Anchor::Start, Font::Title, "", &words);
         }
         for (index, panel) in self.panels.iter().enumerate() {
             let (left, mut y) = (layout.left(index), layout.headings + 12.0);
-            for (words, font) in [(&panel.title, Font::Title), (&panel.subtitle, Font::Plain)] {
+            for (words, font) in [(&panel.title, Font::Heading), (&panel.subtitle, Font::Plain)] {
                 if !words.is_empty() {
                     let words = line(layout.panel_width, font, words);
                     ink.text((left, y), Anchor::Start, font, "", &words);
@@ -202,7 +216,7 @@ impl Layout {
         let width = side(picture.width.unwrap_or(WIDTH));
         let count = picture.panels.len().max(1) as f64;
         let panel_width = ((width - 2.0 * MARGIN - (count - 1.0) * GAP) / count).max(1.0);
-        let headings = MARGIN + if picture.title.is_empty() { 0.0 } else { LINE + 4.0 };
+        let headings = MARGIN + if picture.title.is_empty() { 0.0 } else { LINE + 8.0 };
         let has = |line: fn(&Panel) -> bool| if picture.panels.iter().any(line) { LINE } else { 0.0 };
         let top = headings + has(|panel| !panel.title.is_empty()) + has(|panel| !panel.subtitle.is_empty());
         let foot = 10.0 + LINE * legend::lines(entries, width - 2.0 * MARGIN) as f64 + 8.0;

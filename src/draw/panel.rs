@@ -12,12 +12,13 @@ use super::{
 };
 use crate::{
     eval::doorway::{DOORWAY_DEPTH, Gap},
-    world::rough::inches,
+    units::inches,
 };
 
 /// Steps of the path shorter than this many pixels are joined.
 const SHORTEST_STEP: f64 = 0.5;
-/// Height of the words over a dimension line, and half the length of its ticks, in pixels.
+/// Height of a letter, and of the words over a dimension line, and half the length of its ticks, in pixels.
+const LETTER: f64 = 11.0;
 const WORDS_UP: f64 = 7.0;
 const TICK: f64 = 4.5;
 /// How far off the band in which points count the free stretch and the whole opening are measured, in pixels.
@@ -281,11 +282,15 @@ impl Doorway<'_> {
             path.add('M', &self.at(end, off - TICK)).add('L', &self.at(end, off + TICK));
         }
         path.write("thin", &mut ink.svg);
-        // Words lie flat; beside a wall that runs up the page they need half their width.
-        let flat = 0.5 * font.width(words);
-        let beyond = off + WORDS_UP + self.away.x.abs() * flat + 10.0 * self.away.y.min(0.0).abs();
+        // Words run along the wall, from left to right or upwards, and stand on the side of the line that faces away.
+        let mut turn = libm::atan2(-self.along.y, self.along.x).to_degrees();
+        if !(-90.0..90.0).contains(&turn) {
+            turn -= 180.0_f64.copysign(turn);
+        }
+        let up = Vector2::new(libm::sin(turn.to_radians()), libm::cos(turn.to_radians()));
+        let beyond = off + WORDS_UP + if up.dot(&self.away) > 0.0 { 0.0 } else { LETTER };
         let [x, y] = self.at(f64::midpoint(from, to), beyond);
-        ink.text((x, y), Anchor::Middle, font, colour, words);
+        ink.turned_text((x, y), turn, Anchor::Middle, font, colour, words);
     }
 }
 

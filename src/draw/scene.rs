@@ -196,19 +196,28 @@ impl Scene {
         Point2::from(sum / places.len().max(1) as f64)
     }
 
-    /// The points that a frame has to show: those of marks, paths and segments; without any, arcs, and without those, walls.
+    /// The points that a frame has to show: those of marks, segments, grids, paths and openings; where there are only the latter
+    /// two, those of arcs, and without those, of walls.
     pub fn extent(&self) -> Vec<Point2<f64>> {
         let all = |points: fn(&Content) -> Vec<Point2<f64>>| -> Vec<Point2<f64>> {
             self.layers.iter().flat_map(|layer| points(&layer.content)).collect()
         };
-        let (mut found, arcs) = (all(Content::places), all(Content::rims));
-        if !self.layers.iter().any(|layer| matches!(layer.content, Content::Marks(_) | Content::Segments(_))) {
-            found.extend(arcs);
+        let has = |kind: fn(&Content) -> bool| self.layers.iter().any(|layer| kind(&layer.content));
+        let mut found = all(Content::places);
+        if has(|content| matches!(content, Content::Marks(_) | Content::Segments(_) | Content::Grid(_))) {
+            return found;
         }
-        if found.is_empty() { all(Content::structure) } else { found }
+        found.extend(all(if has(|content| matches!(content, Content::Arcs(_))) {
+            Content::rims
+        } else {
+            Content::structure
+        }));
+        found
     }
 }
 
+/// Room on either side of an opening, in metres.
+const OPENING_ROOM: f64 = 1.0;
 /// What the names of walls begin with; their material follows.
 const WALLS: &str = "walls";
 /// The name of marks that are no claims.
@@ -259,6 +268,7 @@ impl Content {
             Self::Path(path) => path.iter().copied().flatten().collect(),
             Self::Segments(segments) => segments.iter().flatten().copied().collect(),
             Self::Grid(grid) => grid.corners().to_vec(),
+            Self::Openings(openings) => openings.iter().flat_map(|jambs| around(*jambs)).collect(),
             _ => Vec::new(),
         }
     }
@@ -275,10 +285,16 @@ impl Content {
     fn structure(&self) -> Vec<Point2<f64>> {
         match self {
             Self::Walls(walls) => walls.iter().flat_map(|wall| wall.corners()).collect(),
-            Self::Openings(openings) => openings.iter().flatten().copied().collect(),
             _ => Vec::new(),
         }
     }
+}
+
+/// What has to be seen of an opening: the jambs, and on either side room for what is written there.
+fn around([from, to]: [Point2<f64>; 2]) -> [Point2<f64>; 6] {
+    let along = (to - from) / (to - from).norm();
+    let side = Vector2::new(-along.y, along.x) * OPENING_ROOM;
+    [from, to, from + side, from - side, to + side, to - side]
 }
 
 impl Wall {

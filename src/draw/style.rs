@@ -6,7 +6,7 @@ use super::{
 
 /// The style sheet of every picture; colours by Okabe and Ito (Color Universal Design, 2008).
 pub(super) const SHEET: &str = "\
-text,.t{font:13px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#444}.b{font-weight:bold;font-size:16px;fill:#111}\
+text,.t{font:13px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#444}.t1,.t2{font-weight:bold;font-size:19px;fill:#111}.t2{font-size:16px}\
 .d{font-weight:bold;font-size:15px}.d0{fill:#111}.d1{fill:#d55e00}.d2{fill:#0072b2}.m{text-anchor:middle}.e{text-anchor:end}\
 path{fill:none}.paper{fill:#fff}.border{fill:none;stroke:#ddd}.thin{stroke:#555}\
 .rough{stroke:#bdbdbd;stroke-width:7}.diffuse{stroke:#cdbfae;stroke-width:7}.specular{stroke:#7b93a8;stroke-width:3}\

@@ -1,7 +1,7 @@
 //! How much of an opening the points leave free.
 use nalgebra::Point2;
 
-use crate::world::rough::inches;
+use crate::units::inches;
 
 /// A point counts as standing in an opening or on its jambs when it lies this near to the line between the jambs, in metres.
 pub const DOORWAY_DEPTH: f64 = inches(12.0);

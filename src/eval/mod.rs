@@ -7,6 +7,7 @@ mod nearness;
 mod observable;
 mod scores;
 mod spread;
+pub mod views;
 
 pub use self::{
     observable::{COVERED, Observable},

@@ -2,10 +2,7 @@
 use nalgebra::Point2;
 
 use super::nearness::Nearness;
-use crate::{
-    log::View,
-    world::{Shape, rough::inches},
-};
+use crate::{log::View, units::inches, world::Shape};
 
 /// Length of the pieces into which surfaces are divided, in metres.
 const PIECE: f64 = inches(1.0);

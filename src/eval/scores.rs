@@ -1,19 +1,18 @@
 //! The scores of a set of points, and how they come about.
 use std::collections::BTreeMap;
 
-use atm_core::{Isometry2, Point2, UnitComplex, Vector2};
+use atm_core::Point2;
 use serde::Serialize;
 
-use super::{doorway::Gap, observable::Observable, spread::Spread};
+use super::{doorway::Gap, observable::Observable, spread::Spread, views};
 use crate::{
-    intake::Defaults,
     log::{
         View,
         echo_table::Estimate,
         truth::{Cause, Truth},
     },
-    rig::Rig,
-    world::{World, rough::inches},
+    units::inches,
+    world::World,
 };
 
 /// A point farther than this from every surface is a ghost, in metres.
@@ -63,11 +62,6 @@ impl<'a> Judge<'a> {
         Self { world, truth, observable }
     }
 
-    /// A judge for a drive of [`RIG`] along the world's own path, as [`evaluate`] has it.
-    pub fn of_world(world: &'a World, truth: Option<&'a Truth>) -> Self {
-        Self::new(world, truth, &views(world))
-    }
-
     /// The scores of these points.
     pub fn scores(&self, estimates: &[Estimate]) -> Scores {
         let mut kinds: BTreeMap<&str, Vec<&Estimate>> = BTreeMap::new();
@@ -107,33 +101,9 @@ impl<'a> Judge<'a> {
 }
 
 /// The scores of points against a world: azimuth errors where there is a truth, coverage of what the world's own path shows to
-/// [`RIG`] from every sweep.
+/// [`views::RIG`] from every sweep.
 ///
-/// For a drive with another rig or along another way, see [`Judge`].
+/// For a drive with another rig or along another way, see [`Judge`] and [`views::of_log`].
 pub fn evaluate(estimates: &[Estimate], world: &World, truth: Option<&Truth>) -> Scores {
-    Judge::of_world(world, truth).scores(estimates)
-}
-
-/// The built-in rig whose beams look around where nothing is said of another.
-pub const RIG: &str = "nomad200";
-/// Most sweeps of a path that are looked from; of more, evenly spaced ones.
-const MOST_SWEEPS: u64 = 10_000;
-
-/// What the sensors of [`RIG`] see along the path of a world.
-fn views(world: &World) -> Vec<View> {
-    let rig = Rig::builtin(RIG);
-    let sensors = rig.and_then(|rig| Defaults::default().complete(&rig).ok()).unwrap_or_default();
-    let (path, mut views) = (world.path(), Vec::new());
-    let step = usize::try_from(path.sweep_count().div_ceil(MOST_SWEEPS)).unwrap_or(usize::MAX);
-    for (_, pose) in path.sweeps().step_by(step) {
-        let heading = UnitComplex::from_cos_sin_unchecked(libm::cos(pose.yaw), libm::sin(pose.yaw));
-        let robot = Isometry2::from_parts(Vector2::new(pose.x, pose.y).into(), heading);
-        views.extend(sensors.iter().map(|sensor| View {
-            pose: robot * sensor.mount,
-            limits: sensor.limits,
-            beam: sensor.beam,
-            range_resolution: sensor.range_resolution,
-        }));
-    }
-    views
+    Judge::new(world, truth, &views::of_world(world)).scores(estimates)
 }

@@ -64,10 +64,10 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
         Command::Fuse(args) => command::fuse::run(args),
         Command::Plan(args) => command::plan::run(args),
         Command::Info(args) => command::info::run(args),
+        Command::Simulate(args) => command::simulate::run(args),
         Command::Eval(args) => command::eval::run(args),
         Command::Compare(args) => command::compare::run(args),
         Command::Draw(args) => command::draw::run(args),
-        Command::Simulate(args) => command::simulate::run(args),
     };
     match result {
         Ok(Outcome::Done) | Err(Failure::ReaderGone) => 0,

@@ -182,3 +182,28 @@ fn what_can_not_be_drawn_is_refused_by_its_name() {
     draw(&[&table, "-o", &scratch.name("p.png"), "--size", "16384x16384"]).exits(2).says(&["16384 x 16384"]);
     assert_eq!(scratch.list(), ["crossings.csv", "echoes.csv", "empty.csv", "own.svg"]);
 }
+
+/// What the README shows, as docs/eval-and-draw.md says it is made; there, `-o` names the file.
+#[test]
+fn the_picture_of_the_readme_is_what_its_command_draws() {
+    let scratch = Scratch::new();
+    let (table, crossings) = fused(&scratch);
+    let documents = read(root().join("docs/eval-and-draw.md").to_str().expect("a path in UTF-8"));
+    let (_, command) = documents.split_once("$ atm draw examples/doorway.csv").expect("the command of the picture");
+    let (command, _) = command.split_once("```").expect("its end");
+    // Words between quotes are one argument each.
+    let parts = command.split('\'').enumerate().flat_map(|(index, part)| match index % 2 {
+        0 => part.replace("\\\n", " ").split_whitespace().map(str::to_owned).collect(),
+        _ => vec![part.to_owned()],
+    });
+    let args: Vec<String> = ["draw", SAMPLE].into_iter().map(str::to_owned).chain(parts).collect();
+    let args = args.iter().map(|arg| match arg.as_str() {
+        "echoes.csv" => table.as_str(),
+        "crossings.csv" => crossings.as_str(),
+        "docs/doorway.svg" => "-",
+        arg => arg,
+    });
+    let drawn = atm(args).exits(0);
+    let shown = read(root().join("docs/doorway.svg").to_str().expect("a path in UTF-8"));
+    assert_same(&drawn.stdout, shown.as_bytes());
+}

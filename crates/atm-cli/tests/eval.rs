@@ -40,6 +40,22 @@ fn a_truth_file_gives_azimuth_errors() {
 }
 
 #[test]
+fn coverage_is_about_what_the_log_could_see() {
+    // The sample's own log looks from where the world's path goes; its first sweep alone sees less, of which the point is a
+    // larger share.
+    let coverage = |more: &[&str]| {
+        let json = eval(ON_THE_WALL, &[&["--json"], more].concat()).exits(0).json();
+        json["coverage"].as_f64().expect("a share")
+    };
+    let scratch = Scratch::new();
+    let first: String = sample().lines().take(17).map(|line| format!("{line}\n")).collect();
+    let (by_path, by_log) = (coverage(&[]), coverage(&["--log", SAMPLE, "--rig", "nomad200"]));
+    assert_near(by_log, by_path, 1e-12);
+    assert!(coverage(&["--log", &scratch.file("first.csv", first), "--rig", "nomad200"]) > 1.5 * by_path);
+    eval(ON_THE_WALL, &["--log", SAMPLE]).exits(2).says(&["--rig"]);
+}
+
+#[test]
 fn parameters_of_the_world_count() {
     // The wall is moved to where the point is.
     let error = |more: &[&str]| eval("x,y\n1,2\n", more).exits(0).json()["surface_error_m"]["mean"].as_f64();

@@ -1,11 +1,12 @@
 //! Centerline, interleaving, intersections, triangulation.
 
-use atm_core::{Bounds, Echo, Fuser, Kind, LatestArrays, Point2, TransversalMedian, Vector2};
+use atm_core::{Bounds, Echo, Fuser, Kind, LatestArrays, Limits, Point2, Reading, TransversalMedian, Vector2};
 
 use super::{super::*, INCH, NARROW, Sensor, assert_near, run};
 use crate::{
+    simulate::{Beam, Scene},
     track::Pose,
-    world::rough::{Beam, FIELD_OF_VIEW, OPENING_END, OPENING_START, WALL_DISTANCE, doorway_world},
+    world::World,
 };
 
 #[test]
@@ -39,44 +40,35 @@ fn interleaving_applies_to_a_robot_that_turned_by_half_a_beam_where_it_stood() {
     assert!(run(Interleave::default(), &turning_while_driving).is_none());
 }
 
+/// The ring's beams, in radians.
+const FIELD_OF_VIEW: f64 = std::f64::consts::PI / 8.0;
+
 /// The centres of the cones of a ring at each pose, in a corridor with an opening, and how far off each echo was, in radians.
-fn centres(seed: u64, poses: &[Pose]) -> (Vec<Point2<f64>>, Vec<f64>) {
-    let world = doorway_world(seed);
+fn centres(world: &World, seed: u64, poses: &[Pose]) -> (Vec<Point2<f64>>, Vec<f64>) {
+    let scene = Scene::new(world.clone(), seed);
     let (mut points, mut off) = (Vec::new(), Vec::new());
     for pose in poses {
-        for sensor in 0..16 {
-            let yaw = pose.yaw + FIELD_OF_VIEW * f64::from(sensor);
-            let (sin, cos) = yaw.sin_cos();
-            let origin = Point2::new(pose.x, pose.y) + Vector2::new(cos, sin) * (9.0 * INCH);
-            let Some(heard) = world.reflection(&Beam::new(origin, yaw, FIELD_OF_VIEW)) else {
+        for index in 0..16u16 {
+            let yaw = pose.yaw + FIELD_OF_VIEW * f64::from(index);
+            let at = Point2::new(pose.x, pose.y) + Vector2::new(yaw.cos(), yaw.sin()) * (9.0 * INCH);
+            let silent = Sensor { index, ..NARROW }.reads(0, (at.x, at.y), yaw.to_degrees(), f64::INFINITY);
+            let Some(heard) = scene.direct(&Beam::new(&silent.pose, FIELD_OF_VIEW), 255.0 * INCH) else {
                 continue;
             };
-            if heard.range < 255.0 * INCH {
-                let reading = Sensor { index: sensor as u16, ..NARROW }.reads(
-                    0,
-                    (origin.x, origin.y),
-                    yaw.to_degrees(),
-                    heard.range,
-                );
-                points.push(run(Centerline::default(), &[reading]).unwrap().points[0].position);
-                let away = heard.point - origin;
-                off.push((Vector2::new(cos, sin).perp(&away)).atan2(Vector2::new(cos, sin).dot(&away)).abs());
-            }
+            let reading = Reading { range: Limits::NONE.classify(heard.range), ..silent };
+            points.push(run(Centerline::default(), &[reading]).unwrap().points[0].position);
+            off.push(heard.azimuth.abs());
         }
     }
     (points, off)
 }
 
 /// The widest stretch of the opening without a point within 18 in of the wall's line.
-fn open(points: &[Point2<f64>]) -> f64 {
-    let mut across: Vec<f64> = points
-        .iter()
-        .filter(|point| {
-            (point.y - WALL_DISTANCE).abs() < 18.0 * INCH && (OPENING_START..OPENING_END).contains(&point.x)
-        })
-        .map(|point| point.x)
-        .collect();
-    across.extend([OPENING_START, OPENING_END]);
+fn open(world: &World, points: &[Point2<f64>]) -> f64 {
+    let [from, to] = world.openings()[0].jambs;
+    let stands = |point: &&Point2<f64>| (point.y - from.y).abs() < 18.0 * INCH && (from.x..to.x).contains(&point.x);
+    let mut across: Vec<f64> = points.iter().filter(stands).map(|point| point.x).collect();
+    across.extend([from.x, to.x]);
     across.sort_unstable_by(f64::total_cmp);
     across.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
 }
@@ -85,14 +77,15 @@ fn open(points: &[Point2<f64>]) -> f64 {
 fn rotating_and_interleaving_does_not_help() {
     // Fig. 5: the cones are as wide as before, so the second half of the centres is as far off as the first, and the opening
     // is no wider.
+    let world = World::load("doorway", &[]).unwrap();
     let (mut plain_off, mut turned_off) = (Vec::new(), Vec::new());
     for seed in 1..=10 {
         let path: Vec<Pose> = (0..49).map(|k| Pose { x: f64::from(k) * 5.0 * INCH, y: 0.0, yaw: 0.0 }).collect();
-        let (plain, off) = centres(seed, &path);
-        let (both, both_off) = centres(seed, &interleaved(&path, FIELD_OF_VIEW));
+        let (plain, off) = centres(&world, seed, &path);
+        let (both, both_off) = centres(&world, seed, &interleaved(&path, FIELD_OF_VIEW));
         assert!(both.len() > plain.len() * 3 / 2, "it does have many more points");
-        assert!(open(&both) <= open(&plain), "seed {seed}");
-        assert!(open(&both) < 20.0 * INCH, "seed {seed}: {} in of 36 are open", open(&both) / INCH);
+        assert!(open(&world, &both) <= open(&world, &plain), "seed {seed}");
+        assert!(open(&world, &both) < 20.0 * INCH, "seed {seed}: {} in of 36 are open", open(&world, &both) / INCH);
         plain_off.extend(off);
         turned_off.extend(both_off);
     }

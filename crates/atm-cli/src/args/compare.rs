@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::{
     log::{Format, LogArgs},
-    values::{history, method, min_angle, positive_length, range_resolution, setting},
+    values::{history, method, min_angle, parameter, positive_length, range_resolution},
 };
 
 #[derive(Debug, Args)]
@@ -22,7 +22,7 @@ pub struct Compare {
     #[arg(long, value_name = "NAME|FILE")]
     pub world: Option<String>,
     /// A parameter of the world, such as opening=30in
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting, requires = "world")]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = parameter, requires = "world")]
     pub set: Vec<(String, String)>,
     /// Where each reading's echo really came from, as atm simulate --truth writes it
     #[arg(long, value_name = "FILE", requires = "world")]

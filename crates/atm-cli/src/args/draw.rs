@@ -19,7 +19,7 @@ pub struct Draw {
     #[arg(long, value_name = "NAME|FILE")]
     pub world: Option<String>,
     /// A parameter of the world, such as opening=30in
-    #[arg(long, value_name = "KEY=VALUE", value_parser = super::values::setting, requires = "world")]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = super::values::parameter, requires = "world")]
     pub set: Vec<(String, String)>,
     /// Draw only these kinds of echoes, or only these layers
     #[arg(long, value_name = "NAME", value_delimiter = ',')]

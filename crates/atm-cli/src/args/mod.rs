@@ -45,12 +45,12 @@ pub enum Command {
     Plan(Plan),
     /// What is in a log
     Info(Info),
+    /// Drive a robot through a world and write its log
+    Simulate(Simulate),
     /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
     Eval(Eval),
     /// Every method on one log, side by side
     Compare(Box<Compare>),
     /// Draw walls, path, arcs, crossings and echoes
     Draw(Box<Draw>),
-    /// Drive a robot through a world and write its log
-    Simulate(Simulate),
 }

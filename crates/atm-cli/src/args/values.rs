@@ -76,23 +76,15 @@ pub fn min_angle(text: &str) -> Result<MinAngle<f64>, String> {
     MinAngle::new(units::angle(text).map_err(words)?).map_err(words)
 }
 
-/// `KEY=VALUE`.
-pub fn setting(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
-        _ => Err(format!("{text} is not KEY=VALUE")),
-    }
-}
-
-pub fn method(text: &str) -> Result<Name, String> {
-    let known = || Name::ALL.map(Name::word).join(", ");
-    Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
-}
-
 /// `KEY=VALUE`, as it stands: what keys there are depends on the world.
 pub fn parameter(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err(format!("{text} is not KEY=VALUE, like opening=36in")),
     }
+}
+
+pub fn method(text: &str) -> Result<Name, String> {
+    let known = || Name::ALL.map(Name::word).join(", ");
+    Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
 }

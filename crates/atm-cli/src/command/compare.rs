@@ -3,7 +3,7 @@
 mod files;
 mod table;
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::collections::BTreeMap;
 
 use atm::{
     compare::{
@@ -11,11 +11,7 @@ use atm::{
     },
     core::MinAngle,
     eval::{Judge, Scores},
-    log::{
-        csv::{CsvReadings, PoseUse},
-        truth::Truth,
-    },
-    pipeline::Defaults,
+    log::{View, truth::Truth},
     world::World,
 };
 use serde_json::{Map, Value, json};
@@ -34,7 +30,8 @@ pub fn run(args: &Compare) -> Result<Outcome, Failure> {
     let said: Vec<Said> = names.iter().map(|name| run_method(*name, &recording, &options)).collect::<Result<_, _>>()?;
     let assessed = match &world {
         Some(world) => {
-            let judge = Judge::of_world(world, truth.as_ref());
+            let views: Vec<View> = recording.views().iter().copied().collect();
+            let judge = Judge::new(world, truth.as_ref(), &views);
             against_world(&said, &judge, world, recording.readings(), recording.ids())?
         }
         None => among_themselves(&said, recording.readings())?,
@@ -62,17 +59,14 @@ fn distinct(names: &[Name]) -> Vec<Name> {
 
 fn record(args: &Compare) -> Result<Recording, Failure> {
     let input = command::open(&args.input, args.from)?;
-    let rig = command::rig(&args.log)?.ok_or_else(command::no_rig)?;
     let length = input.length;
-    let defaults = Defaults { field_of_view: Some(args.log.fov), range_resolution: args.range_resolution };
-    let sensors = defaults.complete(&rig)?;
-    let poses = command::pose_use(&args.log, PoseUse::Needed);
-    let format = command::table_format(Some(&rig));
-    let mut source = CsvReadings::new(input, &format, poses, command::empty_cell(&args.log), Arc::clone(&rig))?;
-    let mut track = command::track(&args.log, Some(&rig))?.map(|(track, _)| track);
+    let mut log = command::Readings::open(input, &args.log, &args.input)?;
+    if let Some(resolution) = args.range_resolution {
+        log.sensors.iter_mut().for_each(|sensor| sensor.range_resolution = resolution);
+    }
     let bar = report::progress(length, args.quiet);
     let mut progress = |bytes| bar.set_position(bytes);
-    let recording = Recording::read(&mut source, track.as_mut(), &sensors, args.drop_held, &mut progress);
+    let recording = Recording::read(&mut log.source, log.track.as_mut(), &log.sensors, args.drop_held, &mut progress);
     bar.finish_and_clear();
     Ok(recording?)
 }

@@ -13,11 +13,9 @@ use atm::{
         Input,
         content::Content,
         crossing_table::CrossingTable,
-        csv::{CsvReadings, PoseUse},
         echo_table::EchoTable,
         output::{Output, overwrites},
     },
-    pipeline::Defaults,
     summary::Dropped,
     world::World,
 };
@@ -166,15 +164,8 @@ fn log(
     partners: &BTreeSet<Key>,
     dropped: &mut Dropped,
 ) -> Result<Scene, Failure> {
-    let rig = command::rig(&args.log)?.ok_or_else(|| {
-        Failure::Usage(format!("{path}: is a log of readings; to draw it, name the sensors with --rig"))
-    })?;
-    let sensors = Defaults { field_of_view: Some(args.log.fov), range_resolution: None }.complete(&rig)?;
-    let format = command::table_format(Some(&rig));
-    let poses = command::pose_use(&args.log, PoseUse::Needed);
-    let mut source = CsvReadings::new(input, &format, poses, command::empty_cell(&args.log), Arc::clone(&rig))?;
-    let mut track = command::track(&args.log, Some(&rig))?.map(|(track, _)| track);
-    let (scene, found) = drive(&mut source, track.as_mut(), &sensors, shown, partners)?;
+    let mut log = command::Readings::open(input, &args.log, path)?;
+    let (scene, found) = drive(&mut log.source, log.track.as_mut(), &log.sensors, shown, partners)?;
     dropped.extend(found);
     Ok(scene)
 }

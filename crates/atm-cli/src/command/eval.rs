@@ -2,8 +2,8 @@
 
 use atm::{
     core::Kind,
-    eval::{Metrics, Scores, Spread, evaluate},
-    log::{echo_table::EchoTable, truth::Truth},
+    eval::{Judge, Metrics, Scores, Spread, evaluate, views},
+    log::{View, echo_table::EchoTable, truth::Truth},
     summary::Dropped,
     world::World,
 };
@@ -22,13 +22,24 @@ pub fn run(args: &Eval) -> Result<Outcome, Failure> {
     let truth = args.truth.as_deref().map(Truth::read).transpose()?;
     let table = EchoTable::new(command::open(&args.input, None)?)?;
     let estimates: Vec<_> = table.estimates(|problem| dropped.add(problem)).collect::<Result<_, _>>()?;
-    let scores = evaluate(&estimates, &world, truth.as_ref());
+    let scores = match &args.drive {
+        Some(path) => Judge::new(&world, truth.as_ref(), &views(args, path, &mut dropped)?).scores(&estimates),
+        None => evaluate(&estimates, &world, truth.as_ref()),
+    };
     crate::print(&if args.json { as_json(&scores)? } else { as_text(&scores) })?;
     let Some(unusable) = report::unusable(&dropped) else {
         return Ok(Outcome::Done);
     };
     report::say(format_args!("{unusable}"));
     Ok(Outcome::Partly)
+}
+
+/// From where the log has looked.
+fn views(args: &Eval, path: &str, dropped: &mut Dropped) -> Result<Vec<View>, Failure> {
+    let mut log = command::Readings::open(command::open(path, None)?, &args.log, path)?;
+    let (views, found) = views::of_log(&mut log.source, log.track.as_mut(), &log.sensors)?;
+    dropped.extend(found);
+    Ok(views)
 }
 
 fn as_json(scores: &Scores) -> Result<String, Failure> {

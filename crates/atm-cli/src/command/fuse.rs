@@ -29,7 +29,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     check_outputs(args)?;
     // The log first: whether a rig is needed depends on what it is.
     let input = command::open(&args.input, args.from)?;
-    let rig = command::rig(&args.log)?.ok_or_else(command::no_rig)?;
+    let rig = command::rig(&args.log)?.ok_or_else(no_rig)?;
     let length = input.length;
     let defaults = Defaults { field_of_view: Some(args.log.fov), range_resolution: args.range_resolution };
     let sensors = defaults.complete(&rig)?;
@@ -57,6 +57,13 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     result.map_err(|error| unfinished(error, &partials))?;
     counted?;
     Ok(if summary.is_clean() { Outcome::Done } else { Outcome::Partly })
+}
+
+fn no_rig() -> Failure {
+    Failure::Usage(format!(
+        "a table does not say which sensors made it: name the rig with --rig, a built-in one ({}) or a TOML file",
+        Rig::BUILTIN.join(", ")
+    ))
 }
 
 /// Refuses outputs that can't be written, or that would destroy an input or one another.

@@ -14,11 +14,11 @@ use atm::{
     error::Error,
     log::{
         Input,
-        csv::{EmptyCell, PoseUse},
+        csv::{CsvReadings, EmptyCell, PoseUse},
         format::Format as Found,
         poses::PoseLog,
     },
-    pipeline::AnyTrack,
+    pipeline::{AnyTrack, Defaults, SensorModel},
     rig::{Rig, TableFormat},
     track::Track,
 };
@@ -36,14 +36,6 @@ fn rig(args: &LogArgs) -> Result<Option<Arc<Rig>>, Failure> {
     Ok(args.rig.as_deref().map(Rig::load).transpose()?.map(Arc::new))
 }
 
-/// What is said where a rig is needed and not named.
-fn no_rig() -> Failure {
-    Failure::Usage(format!(
-        "a table does not say which sensors made it: name the rig with --rig, a built-in one ({}) or a TOML file",
-        Rig::BUILTIN.join(", ")
-    ))
-}
-
 /// Opens the log, and refuses what can't be read.
 fn open(path: &str, from: Option<Format>) -> Result<Input, Failure> {
     let (found, input) = Input::open(path)?.sniff()?;
@@ -55,6 +47,27 @@ fn open(path: &str, from: Option<Format>) -> Result<Input, Failure> {
     match format {
         Found::Csv => Ok(input),
         _ => Err(Failure::Failed(format!("{}: {NO_MCAP}", input.name))),
+    }
+}
+
+/// A log of readings with all that it takes to use them, for commands that need its rig.
+struct Readings {
+    source: CsvReadings<Arc<Rig>>,
+    track: Option<AnyTrack>,
+    sensors: Vec<SensorModel>,
+}
+
+impl Readings {
+    fn open(input: Input, args: &LogArgs, path: &str) -> Result<Self, Failure> {
+        let rig = rig(args)?;
+        let rig = rig.ok_or_else(|| {
+            Failure::Usage(format!("{path}: a log of readings needs its sensors: name them with --rig"))
+        })?;
+        let sensors = Defaults { field_of_view: Some(args.fov), range_resolution: None }.complete(&rig)?;
+        let (format, poses) = (table_format(Some(&rig)), pose_use(args, PoseUse::Needed));
+        let source = CsvReadings::new(input, &format, poses, empty_cell(args), Arc::clone(&rig))?;
+        let track = track(args, Some(&rig))?.map(|(track, _)| track);
+        Ok(Self { source, track, sensors })
     }
 }
 
