@@ -60,10 +60,14 @@ impl Method for Elfes {
         if let Some(sight) = Sight::new(reading) {
             let sigma = sight.resolution.max(cell);
             let profile = |distance: f64| {
+                // Four σ and a cell before it nothing is left of the echo, to four places.
+                if distance < sight.range - 4.0 * sigma - cell {
+                    return 0.0;
+                }
                 let [near, far] = [-1.0, 1.0].map(|side| normal((distance + side * cell / 2.0 - sight.range) / sigma));
                 0.5 * near + far - near
             };
-            // Four σ behind the echo everything is ½, to four places.
+            // And as far behind it everything is ½.
             return self.update(&sight.footprint(), sight.range + 4.0 * sigma, profile);
         }
         match self.limits.get(usize::from(reading.sensor)).map(Limits::max) {

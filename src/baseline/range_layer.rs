@@ -14,9 +14,14 @@ use crate::{
 /// With γ(θ) = 1 − (θ/β)², 0 beyond β, δ(ρ) = 1 − (1 + tanh(2 (ρ − 1.2))) / 2, λ = δ γ and the cell's width w as a relative error:
 /// before r (1 − 2 w) the model says ½ (1 − λ); up to r (1 − w) it rises, λ/2 ((ρ − r (1 − 2 w)) / (r w))² + ½ (1 − λ); up to
 /// r (1 + w) it is ½ + λ (½ − ½ ((r − ρ) / (r w))²); behind that ½. The cell on the axis at r is set to a cost of 233 first.
+///
+/// All cells of the box around the cone are updated. Those of which the model says ½ are, too: their costs go through
+/// probabilities and back, and what is cut off there is lost.
 #[derive(Debug)]
 pub struct RangeLayer {
     grid: Grid<u8>,
+    /// What becomes of each cost where the model says ½.
+    unmoved: [u8; 256],
 }
 
 /// A cost of which nothing is known, and at which cells begin: ½ of 254, rounded down.
@@ -68,18 +73,36 @@ impl RangeLayer {
     /// # Errors
     /// As [`Grid::new`].
     pub fn new(cell: f64) -> Result<Self> {
-        Ok(Self { grid: Grid::new(cell, Point2::origin(), BEGINNING)? })
+        let mut unmoved = [0; 256];
+        for (cost, next) in (0..=u8::MAX).zip(&mut unmoved) {
+            *next = updated(0.5, cost);
+        }
+        Ok(Self { grid: Grid::new(cell, Point2::origin(), BEGINNING)?, unmoved })
     }
 
     fn update(&mut self, sight: &Sight, cell: Cell) -> Result<()> {
-        let offset = self.grid.center(cell) - sight.position;
-        let azimuth = libm::atan2(sight.boresight.perp(&offset), sight.boresight.dot(&offset));
-        let says = model(sight.range, sight.half_beam, self.grid.resolution(), offset.norm(), azimuth);
-        let prior = probability(self.grid.get(cell));
-        let (occupied, not) = (says * prior, (1.0 - says) * (1.0 - prior));
-        *self.grid.get_mut(cell)? = cost(occupied / (occupied + not));
+        let point = self.grid.center(cell);
+        let before = self.grid.get(cell);
+        let width = self.grid.resolution();
+        let distance = (point - sight.position).norm();
+        let silent = !sight.sees(point) || distance >= sight.range + width * sight.range;
+        let after = if silent {
+            self.unmoved.get(usize::from(before)).copied().unwrap_or(before)
+        } else {
+            updated(model(sight.range, sight.half_beam, width, distance, sight.azimuth(point)), before)
+        };
+        if after != before {
+            *self.grid.get_mut(cell)? = after;
+        }
         Ok(())
     }
+}
+
+/// Bayes' rule on costs.
+fn updated(says: f64, before: u8) -> u8 {
+    let prior = probability(before);
+    let (occupied, not) = (says * prior, (1.0 - says) * (1.0 - prior));
+    cost(occupied / (occupied + not))
 }
 
 impl Method for RangeLayer {

@@ -149,25 +149,40 @@ const THRESHOLDS: usize = 64;
 /// Sweeps a grid's threshold once: the best has the largest harmonic mean of the share of points within [`COVERED`] of a
 /// surface and the share of the surface within [`COVERED`] of a point.
 fn best(evidence: &Evidence, judge: &Judge<'_>, world: &World, ids: &[Arc<str>]) -> Best {
-    let mut values: Vec<f64> = evidence.grid.cells().map(|(_, value)| value).filter(|value| !value.is_nan()).collect();
-    values.sort_unstable_by(f64::total_cmp);
-    values.dedup();
-    // Evenly spaced among the values that there are, the method's own among them.
-    let step = values.len().div_ceil(THRESHOLDS).max(1);
-    let thresholds = values.iter().copied().step_by(step).chain([evidence.occupied_above]);
-    let mut best: Option<(f64, Best)> = None;
-    for threshold in thresholds {
-        let estimates: Vec<Estimate> = evidence.marks(threshold).iter().map(|mark| estimate(mark, ids)).collect();
-        let scores = judge.scores(&estimates);
-        let near = estimates.iter().filter(|estimate| world.distance(estimate.position) <= COVERED).count();
-        let precision = near as f64 / estimates.len().max(1) as f64;
-        let coverage = scores.all.coverage.unwrap_or(0.0);
+    let mut cells: Vec<(f64, Point2<f64>, bool)> = Vec::new();
+    for (cell, value) in evidence.grid.cells().filter(|(_, value)| !value.is_nan()) {
+        let point = evidence.grid.center(cell);
+        cells.push((value, point, world.distance(point) <= COVERED));
+    }
+    // The strongest first: what is above a threshold is a beginning of them.
+    cells.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut best = (0.0, evidence.occupied_above);
+    for threshold in thresholds(&cells, evidence.occupied_above) {
+        let above = cells.partition_point(|(value, ..)| *value > threshold);
+        let points = cells.get(..above).unwrap_or_default();
+        let near = points.iter().filter(|(.., near)| *near).count();
+        let precision = near as f64 / above.max(1) as f64;
+        // With full coverage the mean would be this.
+        if 2.0 * precision / (precision + 1.0) <= best.0 {
+            continue;
+        }
+        let coverage = judge.coverage(points.iter().map(|(_, point, _)| *point)).unwrap_or(0.0);
         let mean = 2.0 * precision * coverage / (precision + coverage).max(f64::MIN_POSITIVE);
-        if best.as_ref().is_none_or(|(most, _)| mean > *most) {
-            best = Some((mean, Best { threshold, scores }));
+        if mean > best.0 {
+            best = (mean, threshold);
         }
     }
-    best.map_or_else(|| Best { threshold: evidence.occupied_above, scores: Scores::default() }, |(_, best)| best)
+    let threshold = best.1;
+    let estimates: Vec<Estimate> = evidence.marks(threshold).iter().map(|mark| estimate(mark, ids)).collect();
+    Best { threshold, scores: judge.scores(&estimates) }
+}
+
+/// The method's own threshold, then evenly spaced ones among the values that there are, from the strongest.
+fn thresholds(cells: &[(f64, Point2<f64>, bool)], own: f64) -> impl Iterator<Item = f64> {
+    let mut values: Vec<f64> = cells.iter().map(|(value, ..)| *value).collect();
+    values.dedup();
+    let step = values.len().div_ceil(THRESHOLDS).max(1);
+    [own].into_iter().chain(values.into_iter().step_by(step))
 }
 
 /// How a method does on the readings that it answers; `None` where its points speak of none.

@@ -16,3 +16,6 @@ pub use self::{
     recording::{Recording, Replay},
     run::{Outcome, run},
 };
+
+#[cfg(test)]
+mod tests;

@@ -41,15 +41,20 @@ impl Footprint {
     ) -> Result<()> {
         let (low, high) = self.bounds(to);
         let (first, last) = (grid.cell(low)?, grid.cell(high)?);
+        // With |azimuth| ≤ half a beam ≤ 90°: ahead² ≥ cos² · distance², without a root for cells off the beam.
         let cos_half = libm::cos(self.half_beam);
-        let nearest = from.max(0.0);
+        let cos_squared = cos_half * cos_half;
         for row in first.row..=last.row {
             for column in first.column..=last.column {
                 let cell = Cell { row, column };
                 let offset = grid.center(cell) - self.sensor;
                 let ahead = self.boresight.dot(&offset);
-                let distance = offset.norm();
-                if !(distance >= nearest && distance <= to && ahead >= cos_half * distance) {
+                let squared = offset.norm_squared();
+                if !(ahead >= 0.0 && ahead * ahead >= cos_squared * squared) {
+                    continue;
+                }
+                let distance = libm::sqrt(squared);
+                if !(distance >= from && distance <= to) {
                     continue;
                 }
                 let azimuth = libm::atan2(self.boresight.perp(&offset), ahead);
