@@ -1,6 +1,7 @@
 //! Below the panels: what the marks mean, and a scale.
 use super::{
-    page::{Anchor, Font, Ink, Layout, Picture},
+    ink::{Anchor, Font, Ink},
+    page::{Layout, Picture},
     scene::{Content, Layer},
     style::{self, Mark, Names},
     svg::PathData,

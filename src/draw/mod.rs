@@ -4,6 +4,7 @@
 //! plane to show, and explains the marks. The same picture gives the same bytes.
 pub mod drive;
 mod frame;
+mod ink;
 mod legend;
 mod letters;
 mod page;

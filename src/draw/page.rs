@@ -5,8 +5,8 @@ use atm_core::Point2;
 
 use super::{
     frame::Frame,
+    ink::{Anchor, Font, Ink},
     legend::{self, Entry},
-    letters::Weight,
     panel::{self, View},
     scene::Scene,
     style::{self, Names},
@@ -50,89 +50,6 @@ pub struct Picture {
     pub height: Option<f64>,
 }
 
-/// The picture as it grows.
-pub(super) struct Ink {
-    pub(super) svg: String,
-    /// Letters become outlines: what is to be made pixels of needs no fonts then.
-    outlines: bool,
-}
-
-/// Where a text stands at its point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
-impl Ink {
-    /// Writes a line of text; `colour` is a class of the style sheet, or empty.
-    pub(super) fn text(&mut self, at: (f64, f64), anchor: Anchor, font: Font, colour: &str, words: &str) {
-        self.turned_text(at, 0.0, anchor, font, colour, words);
-    }
-
-    /// The same, turned clockwise about its point by an angle in degrees.
-    pub(super) fn turned_text(
-        &mut self,
-        (x, y): (f64, f64),
-        turn: f64,
-        anchor: Anchor,
-        font: Font,
-        colour: &str,
-        words: &str,
-    ) {
-        let (weight, size, class) = font.parts();
-        let (share, anchor) = match anchor {
-            Anchor::Start => (0.0, ""),
-            Anchor::Middle => (0.5, "m"),
-            Anchor::End => (1.0, "e"),
-        };
-        let outline = self.outlines.then(|| weight.outline(words, x - share * weight.width(words, size), y, size));
-        let letters = if self.outlines { "t" } else { anchor };
-        let classes: Vec<_> = [letters, class, colour].into_iter().filter(|class| !class.is_empty()).collect();
-        let mut attributes = String::new();
-        if !classes.is_empty() {
-            let _ = write!(attributes, " class=\"{}\"", classes.join(" "));
-        }
-        let (x, y) = (text_of(x), text_of(y));
-        if turn != 0.0 {
-            let _ = write!(attributes, " transform=\"rotate({} {x} {y})\"", text_of(turn));
-        }
-        let _ = match outline {
-            Some(d) => writeln!(self.svg, "<path{attributes} d=\"{d}\"/>"),
-            None => writeln!(self.svg, "<text{attributes} x=\"{x}\" y=\"{y}\">{}</text>", escaped(words)),
-        };
-    }
-}
-
-/// The letters of a text.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Font {
-    Plain,
-    /// Of the whole picture.
-    Title,
-    /// Of one panel.
-    Heading,
-    Dimension,
-}
-
-impl Font {
-    /// Weight, size in pixels, and class in the style sheet.
-    pub(super) fn parts(self) -> (Weight, f64, &'static str) {
-        match self {
-            Self::Plain => (Weight::Regular, 13.0, ""),
-            Self::Title => (Weight::Bold, 19.0, "t1"),
-            Self::Heading => (Weight::Bold, 16.0, "t2"),
-            Self::Dimension => (Weight::Bold, 15.0, "d"),
-        }
-    }
-
-    pub(super) fn width(self, words: &str) -> f64 {
-        let (weight, size, _) = self.parts();
-        weight.width(words, size)
-    }
-}
-
 impl Picture {
     /// The picture as SVG: the same bytes for the same picture, text as text.
     pub fn svg(&self) -> String {
@@ -148,7 +65,7 @@ impl Picture {
         let names = Names::of(self.panels.iter().flat_map(|panel| &panel.scene.layers));
         let entries = legend::entries(self, &names);
         let layout = Layout::of(self, &entries);
-        let mut ink = Ink { svg: String::new(), outlines };
+        let mut ink = Ink::new(outlines);
         let (width, height) = (text_of(layout.width), text_of(layout.height));
         let size = format!("width=\"{width}\" height=\"{height}\"");
         let _ = writeln!(ink.svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" {size}>");

@@ -5,7 +5,7 @@ use atm_core::{Point2, Vector2};
 
 use super::{
     frame::Frame,
-    page::{Anchor, Font, Ink},
+    ink::{Anchor, Font, Ink},
     scene::{Cone, Content, Grid, Layer, Robot, Scene, Wall},
     style::{self, Names, SHADES},
     svg::PathData,
@@ -15,6 +15,10 @@ use crate::{
     units::inches,
 };
 
+/// Circles of a larger radius, in pixels, are not drawn: what renders them has single precision.
+const LARGEST: f64 = 1e6;
+/// Marks that are one path. To fill one takes time by the square of its marks, to have many takes room.
+const AT_ONCE: u64 = 1000;
 /// Steps of the path shorter than this many pixels are joined.
 const SHORTEST_STEP: f64 = 0.5;
 /// Height of a letter, and of the words over a dimension line, and half the length of its ticks, in pixels.
@@ -65,13 +69,13 @@ impl View {
         path.arc_to(cone.range * self.scale, self.x(left.x), self.y(left.y));
     }
 
-    /// Whether something of the beam may be seen: its circle around the sensor reaches into the frame.
+    /// Whether something of the beam may be seen: its circle around the sensor reaches into the frame, and can be drawn.
     fn sees(&self, cone: &Cone) -> bool {
         let (sensor, frame) = (cone.sensor.translation.vector, &self.frame);
         let beside = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
         let x = beside(sensor.x, frame.min().x, frame.max().x);
         let y = beside(sensor.y, frame.min().y, frame.max().y);
-        libm::hypot(x, y) <= cone.range
+        libm::hypot(x, y) <= cone.range && cone.range * self.scale <= LARGEST
     }
 }
 
@@ -91,7 +95,8 @@ pub(super) fn draw(scene: &Scene, view: &View, names: &Names<'_>, ink: &mut Ink)
             Content::Walls(all) => walls(layer, all, view, ink),
             Content::Path(path) => trail(path.iter().copied(), view, ink),
             Content::Beams(cones) => beams(cones, view, style::of_beams(&layer.name), ink),
-            Content::Robot(robot) => body(robot, view, ink),
+            Content::Robot(robot) if robot.radius * view.scale <= LARGEST => body(robot, view, ink),
+            Content::Robot(_) => {}
             Content::Segments(all) => {
                 let mut path = PathData::default();
                 all.iter().for_each(|segment| view.line(&mut path, *segment));
@@ -150,17 +155,19 @@ fn beams(cones: &[Cone], view: &View, class: &str, ink: &mut Ink) {
 }
 
 fn walls(layer: &Layer, walls: &[Wall], view: &View, ink: &mut Ink) {
-    let mut path = PathData::default();
+    let (mut path, mut posts) = (PathData::default(), PathData::default());
     for wall in walls {
         match *wall {
             Wall::Straight(ends) => view.line(&mut path, ends),
-            Wall::Round(center, radius) if view.frame.holds(center) => {
-                path.circle(view.x(center.x), view.y(center.y), (radius * view.scale).max(1.0));
+            Wall::Round(center, radius) if view.frame.holds(center) && radius * view.scale <= LARGEST => {
+                posts.circle(view.x(center.x), view.y(center.y), (radius * view.scale).max(1.0));
             }
             Wall::Round(..) => {}
         }
     }
-    path.write(style::of_wall(layer.material()), &mut ink.svg);
+    let class = style::of_wall(layer.material());
+    path.write(class, &mut ink.svg);
+    posts.write(&format!("{class} post"), &mut ink.svg);
 }
 
 fn trail(places: impl Iterator<Item = Option<Point2<f64>>>, view: &View, ink: &mut Ink) {
@@ -192,12 +199,18 @@ fn marks<'a>(
     names: &Names<'_>,
     ink: &mut Ink,
 ) -> u64 {
-    let (style, mut path, mut outside) = (names.marks(name), PathData::default(), 0);
+    let (style, mut path) = (names.marks(name), PathData::default());
+    let (mut inside, mut outside) = (0, 0);
     for point in points {
-        if view.frame.holds(*point) {
-            style.mark.draw(&mut path, view.x(point.x), view.y(point.y));
-        } else {
+        if !view.frame.holds(*point) {
             outside += 1;
+            continue;
+        }
+        style.mark.draw(&mut path, view.x(point.x), view.y(point.y));
+        inside += 1;
+        if inside % AT_ONCE == 0 {
+            path.write(&style.class, &mut ink.svg);
+            path = PathData::default();
         }
     }
     path.write(&style.class, &mut ink.svg);

@@ -6,23 +6,25 @@ use super::{
 
 /// The style sheet of every picture; colours by Okabe and Ito (Color Universal Design, 2008).
 pub(super) const SHEET: &str = "\
-text,.t{font:13px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#444}.t1,.t2{font-weight:bold;font-size:19px;fill:#111}.t2{font-size:16px}\
-.d{font-weight:bold;font-size:15px}.d0{fill:#111}.d1{fill:#d55e00}.d2{fill:#0072b2}.m{text-anchor:middle}.e{text-anchor:end}\
-path{fill:none}.paper{fill:#fff}.border{fill:none;stroke:#ddd}.thin{stroke:#555}\
-.rough{stroke:#bdbdbd;stroke-width:7}.diffuse{stroke:#cdbfae;stroke-width:7}.specular{stroke:#7b93a8;stroke-width:3}\
-.solid{stroke:#bdbdbd;stroke-width:7}\
-.path{stroke:#888;stroke-width:1.5;stroke-dasharray:1.5 3}.arcs{stroke:#555;stroke-opacity:.35}\
-.faint{stroke:#555;stroke-opacity:.12}.partners{stroke:#555}\
+text,.t{font:13px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#444}\
+.t1,.t2{font-weight:bold;font-size:19px;fill:#111}.t2{font-size:16px}.d{font-weight:bold;font-size:15px}\
+.d0{fill:#111}.d1{fill:#d55e00}.d2{fill:#0072b2}.m{text-anchor:middle}.e{text-anchor:end}path{fill:none}\
+.paper{fill:#fff}.border{fill:none;stroke:#ddd}.thin{stroke:#555}.rough{stroke:#bdbdbd;stroke-width:7}\
+.diffuse{stroke:#cdbfae;stroke-width:7}.specular{stroke:#7b93a8;stroke-width:3}\
+.solid{stroke:#bdbdbd;stroke-width:7}.post{stroke:none;fill:#bdbdbd}.diffuse.post{fill:#cdbfae}\
+.specular.post{fill:#7b93a8}.path{stroke:#888;stroke-width:1.5;stroke-dasharray:1.5 3}\
+.arcs{stroke:#555;stroke-opacity:.35}.faint{stroke:#555;stroke-opacity:.12}.partners{stroke:#555}\
 .beam{fill:#777;fill-opacity:.2;stroke:#666}.beams{fill:#777;fill-opacity:.07;stroke:#777;stroke-opacity:.3}\
 .robot{fill:#e8e8e8;stroke:#555}.arrow{stroke:#333;stroke-width:2}.ring{stroke:#111;stroke-width:1.6}\
-.free1{fill:#d55e00;fill-opacity:.2}.free2{fill:#0072b2;fill-opacity:.17}\
-.truth{stroke:#111;stroke-width:1.2}.crossings{fill:#56b4e9;fill-opacity:.75}\
-.center{fill:#d55e00;stroke:#fff;stroke-width:1;paint-order:stroke}.near{fill:#009e73;stroke:#fff;stroke-width:1.2;paint-order:stroke}\
-.pair{fill:#cc79a7;stroke:#fff;stroke-width:1.2;paint-order:stroke}\
-.single{stroke:#111;stroke-width:1.5}.median{fill:#0072b2;stroke:#fff;stroke-width:1.6;paint-order:stroke}\
-.o0{fill:#e69f00;stroke:#fff;stroke-width:1.2;paint-order:stroke}.o1{stroke:#009e73;stroke-width:1.4}.o2{fill:#cc79a7;stroke:#fff;stroke-width:1.2;paint-order:stroke}\
-.o3{stroke:#0072b2;stroke-width:1.4}.s0{stroke:#0072b2;stroke-width:2}.s1{stroke:#d55e00;stroke-width:2}\
-.g1{fill:#e3e3e3}.g2{fill:#c2c2c2}.g3{fill:#9a9a9a}.g4{fill:#6b6b6b}.g5{fill:#2b2b2b}";
+.free1{fill:#d55e00;fill-opacity:.2}.free2{fill:#0072b2;fill-opacity:.17}.truth{stroke:#111;stroke-width:1.2}\
+.crossings{fill:#56b4e9;fill-opacity:.75}.center{fill:#d55e00;stroke:#fff;stroke-width:1;paint-order:stroke}\
+.near{fill:#009e73;stroke:#fff;stroke-width:1.2;paint-order:stroke}\
+.pair{fill:#cc79a7;stroke:#fff;stroke-width:1.2;paint-order:stroke}.single{stroke:#111;stroke-width:1.5}\
+.median{fill:#0072b2;stroke:#fff;stroke-width:1.6;paint-order:stroke}\
+.o0{fill:#e69f00;stroke:#fff;stroke-width:1.2;paint-order:stroke}.o1{stroke:#009e73;stroke-width:1.4}\
+.o2{fill:#cc79a7;stroke:#fff;stroke-width:1.2;paint-order:stroke}.o3{stroke:#0072b2;stroke-width:1.4}\
+.s0{stroke:#0072b2;stroke-width:2}.s1{stroke:#d55e00;stroke-width:2}.g1{fill:#e3e3e3}.g2{fill:#c2c2c2}\
+.g3{fill:#9a9a9a}.g4{fill:#6b6b6b}.g5{fill:#2b2b2b}";
 
 /// Styles for marks that have no name of their own.
 const OTHERS: usize = 4;
@@ -83,17 +85,17 @@ pub(super) struct MarkStyle {
 
 /// Names of marks that come with a look of their own: name, class, shape, rank, words.
 const NAMED: [(&str, &str, Mark, u8, &str); 8] = [
-    ("crossings", "crossings", Mark::Speck, 0, "crossings"),
-    ("centerline", "center", Mark::SmallDisc, 2, "centre of the cone"),
-    ("center", "center", Mark::SmallDisc, 3, "center (no crossing)"),
-    ("near", "near", Mark::Square, 4, "near"),
-    ("pair", "pair", Mark::Triangle, 5, "pair"),
-    ("single", "single", Mark::Plus, 6, "single"),
-    ("median", "median", Mark::Disc, 7, "median"),
-    ("truth", "truth", Mark::Tick, 8, "true echo points"),
+    ("truth", "truth", Mark::Tick, 0, "true echo points"),
+    ("crossings", "crossings", Mark::Speck, 1, "crossings"),
+    ("centerline", "center", Mark::SmallDisc, 3, "centre of the cone"),
+    ("center", "center", Mark::SmallDisc, 4, "center (no crossing)"),
+    ("near", "near", Mark::Square, 5, "near"),
+    ("pair", "pair", Mark::Triangle, 6, "pair"),
+    ("single", "single", Mark::Plus, 7, "single"),
+    ("median", "median", Mark::Disc, 8, "median"),
 ];
 /// The rank of all other marks.
-const RANK: u8 = 1;
+const RANK: u8 = 2;
 const SHAPES: [Mark; OTHERS] = [Mark::Diamond, Mark::Circle, Mark::Square, Mark::Circle];
 
 /// The names in a picture that have no look of their own, each once, in order: their place among them gives them one.

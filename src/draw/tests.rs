@@ -68,7 +68,7 @@ fn every_mark_arc_and_wall_within_the_frame_is_drawn_once() {
     assert_eq!(count(scene.clone(), "median"), 37);
     assert_eq!(count(scene.clone(), "center"), 5);
     assert_eq!(count(scene.clone(), "arcs"), 12);
-    assert_eq!(count(scene.clone(), "rough"), 2);
+    assert_eq!((count(scene.clone(), "rough"), count(scene.clone(), "rough post")), (1, 1));
     assert_eq!(count(scene.clone(), "s0"), 1);
 }
 
@@ -185,7 +185,7 @@ fn the_same_scene_gives_the_same_bytes() {
 
 #[test]
 fn coordinates_of_any_size_leave_the_picture_whole() {
-    for far in [1e12, 1e200, f64::MAX, f64::INFINITY, f64::NAN] {
+    for far in [9.9e3, 1e12, 1e200, f64::MAX, f64::INFINITY, f64::NAN] {
         let mut scene = Scene::new();
         scene.marks("median", [point(far, 0.0), point(1.0, -far)]);
         scene.arcs("arcs", [Cone { range: far, ..cone(far, 1.0, 0.0) }]);

@@ -43,6 +43,7 @@ mod tests {
     use super::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
         #[test]
         fn finds_what_looking_at_all_points_finds(
             points in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 0..30),

@@ -2,7 +2,11 @@
 use nalgebra::Point2;
 
 use super::nearness::Nearness;
-use crate::{log::View, units::inches, world::Shape};
+use crate::{
+    log::View,
+    units::inches,
+    world::{Shape, sight::Touched},
+};
 
 /// Length of the pieces into which surfaces are divided, in metres.
 const PIECE: f64 = inches(1.0);
@@ -14,8 +18,8 @@ pub const COVERED: f64 = inches(3.0);
 /// The pieces of surface that some beam could have seen.
 ///
 /// Every surface is divided into equal pieces of at most 1 in. A piece is observable if for some beam of the drive its middle
-/// lies within the sensor's range limits and within the beam, borders included, and no surface crosses the line of sight:
-/// one that only touches it hides nothing, and a circle hides its own far side. Whether sound would come back from there is
+/// lies within the sensor's range limits and within the beam, borders included, and no surface blocks the line of sight:
+/// one that only touches it hides nothing, two that meet there do, and a pole hides its own far side. Whether sound would come back from there is
 /// not asked: that is the method's trouble, and the material's.
 #[derive(Debug, Clone, Default)]
 pub struct Observable {
@@ -28,12 +32,12 @@ impl Observable {
     pub fn new<'a>(shapes: impl IntoIterator<Item = &'a Shape>, views: &[View]) -> Self {
         let shapes: Vec<&Shape> = shapes.into_iter().collect();
         let beams: Vec<Beam<'_>> = views.iter().map(Beam::new).collect();
-        let total: f64 = shapes.iter().map(|shape| length(shape)).sum();
+        let total: f64 = shapes.iter().map(|shape| shape.length()).sum();
         let longest = PIECE.max(total / MOST_PIECES);
         let mut pieces = Vec::new();
         for (index, shape) in shapes.iter().enumerate() {
-            let count = (length(shape) / longest).ceil().max(1.0);
-            let size = length(shape) / count;
+            let count = (shape.length() / longest).ceil().max(1.0);
+            let size = shape.length() / count;
             for piece in 0..count as u64 {
                 let middle = along(shape, (piece as f64 + 0.5) / count);
                 if beams.iter().any(|beam| beam.holds(middle) && !hidden(beam.sensor(), middle, &shapes, index)) {
@@ -54,13 +58,6 @@ impl Observable {
         let (near, all) = (Nearness::new(points, COVERED), self.length());
         let covered: f64 = self.pieces.iter().filter(|(middle, _)| near.any(*middle)).map(|(_, length)| length).sum();
         (all > 0.0).then(|| covered / all)
-    }
-}
-
-fn length(shape: &Shape) -> f64 {
-    match shape {
-        Shape::Segment { from, to } => (to - from).norm(),
-        Shape::Circle { radius, .. } => std::f64::consts::TAU * radius,
     }
 }
 
@@ -100,24 +97,12 @@ impl<'a> Beam<'a> {
 
 /// Whether some shape hides the place, which lies on the shape of index `own`, from the sensor.
 fn hidden(sensor: Point2<f64>, place: Point2<f64>, shapes: &[&Shape], own: usize) -> bool {
+    let mut touched = Touched::default();
     shapes.iter().enumerate().any(|(index, shape)| match shape {
-        Shape::Segment { from, to } => index != own && crosses(sensor, place, *from, *to),
+        Shape::Segment { .. } if index == own => false,
         Shape::Circle { center, .. } if index == own => (place - center).dot(&(sensor - place)) <= 0.0,
-        Shape::Circle { center, radius } => (nearest(sensor, place, *center) - center).norm() < *radius,
+        _ => touched.block(shape.hit(sensor, place)),
     })
-}
-
-/// Whether the open segments `a`–`b` and `c`–`d` cross in their insides.
-fn crosses(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>, d: Point2<f64>) -> bool {
-    let side = |p: Point2<f64>, q: Point2<f64>, r: Point2<f64>| (q - p).perp(&(r - p));
-    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
-}
-
-/// The point of the segment `a`–`b` that is nearest to `c`.
-fn nearest(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>) -> Point2<f64> {
-    let way = b - a;
-    let share = (way.dot(&(c - a)) / way.norm_squared()).clamp(0.0, 1.0);
-    a + way * share
 }
 
 #[cfg(test)]

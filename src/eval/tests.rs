@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2, Vector2};
+use proptest::prelude::*;
 use serde_json::Value;
 
 use super::*;
@@ -115,6 +116,56 @@ fn coverage_grows_to_all_that_can_be_seen() {
     let covered = [coverage(&near), coverage(&both), coverage(&all)];
     assert!(covered[0] > 0.2 && covered[0] < covered[1] && covered[1] < covered[2], "{covered:?}");
     assert_near(Some(covered[2]), 1.0);
+}
+
+/// A world of two walls, an opening, a pole and a path, all moved.
+fn moved_world(motion: &Isometry2<f64>) -> World {
+    let place = |x: f64, y: f64| {
+        let point = motion * Point2::new(x, y);
+        format!("[{:?}, {:?}]", point.x, point.y)
+    };
+    let pole = motion * Point2::new(1.5, 0.9);
+    let text = format!(
+        "name = \"moved\"\nmaterial = \"rough\"\n\
+         [[wall]]\npoints = [{}, {}]\n[[wall]]\npoints = [{}, {}]\n[[opening]]\nfrom = {}\nto = {}\n\
+         [[pole]]\nx = {:?}\ny = {:?}\nradius = 0.1\n[path]\nkind = \"waypoints\"\npoints = [{}, {}]\n",
+        place(-2.0, 2.0),
+        place(1.0, 2.0),
+        place(2.0, 2.0),
+        place(5.0, 2.0),
+        place(1.0, 2.0),
+        place(2.0, 2.0),
+        pole.x,
+        pole.y,
+        place(0.0, 0.0),
+        place(3.0, 0.0),
+    );
+    World::parse(&text, "moved.toml", &[]).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(16) })]
+    #[test]
+    fn moving_world_and_points_together_changes_no_score(
+        x in -100.0..100.0_f64, y in -100.0..100.0_f64, turn in -3.0..3.0_f64,
+        points in prop::collection::vec((-1.0..4.0_f64, 1.5..2.4_f64), 0..40),
+    ) {
+        let motion = Isometry2::new(Vector2::new(x, y), turn);
+        let points: Vec<_> = points.into_iter().map(|(x, y)| estimate(x, y, "median")).collect();
+        let moved = points.iter().map(|point| Estimate { position: motion * point.position, ..point.clone() });
+        let still = evaluate(&points, &moved_world(&Isometry2::identity()), None).all;
+        let moved = evaluate(&moved.collect::<Vec<_>>(), &moved_world(&motion), None).all;
+        prop_assert_eq!((still.points, still.ghosts), (moved.points, moved.ghosts));
+        let same = |one: Option<f64>, other: Option<f64>, slack: f64| match (one, other) {
+            (Some(one), Some(other)) => (one - other).abs() <= slack,
+            (one, other) => one == other,
+        };
+        prop_assert!(same(still.surface_error_m.p90, moved.surface_error_m.p90, 1e-9));
+        prop_assert!(same(still.surface_error_m.mean, moved.surface_error_m.mean, 1e-9));
+        prop_assert!(same(still.doorway_width_m, moved.doorway_width_m, 1e-9));
+        // Pieces on the border of what is seen may fall to either side.
+        prop_assert!(same(still.coverage, moved.coverage, 0.02), "{:?} {:?}", still.coverage, moved.coverage);
+    }
 }
 
 #[test]

@@ -208,6 +208,11 @@ impl<W: Write> TruthWriter<W> {
     }
 
     /// What the file is written to.
+    pub const fn get_ref(&self) -> &W {
+        &self.out
+    }
+
+    /// What the file was written to.
     pub fn into_inner(self) -> W {
         self.out
     }

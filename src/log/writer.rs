@@ -45,7 +45,7 @@ impl<W: Write> CsvLog<W> {
         Ok(Self { out, row: Vec::with_capacity(128), ids: rig.ids().iter().map(|id: &Arc<str>| quoted(id)).collect() })
     }
 
-    /// What the log is written to.
+    /// What the log was written to.
     pub fn into_inner(self) -> W {
         self.out
     }

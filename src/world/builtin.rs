@@ -66,14 +66,17 @@ fn finish(name: &str, parameters: &Parameters<'_>, scene: Scene) -> Result<World
 /// A flaw that parameters have made, in words.
 fn explain(flaw: Flaw, shapes: &[Shape]) -> String {
     let shape = |index: usize| match shapes.get(index) {
-        Some(Shape::Segment { from, to }) => format!("the wall from ({}, {}) to ({}, {})", from.x, from.y, to.x, to.y),
-        Some(Shape::Circle { center, .. }) => format!("the pole at ({}, {})", center.x, center.y),
+        Some(Shape::Segment { from, to }) => {
+            format!("the wall from ({:.3}, {:.3}) to ({:.3}, {:.3})", from.x, from.y, to.x, to.y)
+        }
+        Some(Shape::Circle { center, .. }) => format!("the pole at ({:.3}, {:.3})", center.x, center.y),
         None => String::new(),
     };
     let message = flaw.message;
     let obstacle = flaw.surface.map(|index| format!(" {}", shape(index))).unwrap_or_default();
     match flaw.part {
         Part::Whole => message,
+        Part::CriticalAngle => format!("critical_angle {message}"),
         Part::Surface(index) => format!("{}: {message}", shape(index)),
         Part::Opening(_) => format!("the opening: {message}"),
         Part::Path => format!("the path: {message}{obstacle}"),

@@ -24,6 +24,8 @@ const MAX_WAVES: f64 = 1000.0;
 pub(super) enum Part {
     /// All of it.
     Whole,
+    /// The critical angle.
+    CriticalAngle,
     /// A surface, by its index.
     Surface(usize),
     /// An opening, by its index.
@@ -56,7 +58,7 @@ impl World {
             return Err(Flaw::new(Part::Whole, "an empty world: expected at least one wall or pole"));
         }
         if !(parts.critical_angle > 0.0 && parts.critical_angle < FRAC_PI_2) {
-            return Err(Flaw::new(Part::Whole, "critical_angle must be above 0deg and below 90deg"));
+            return Err(Flaw::new(Part::CriticalAngle, "must be above 0deg and below 90deg"));
         }
         for (index, surface) in parts.surfaces.iter().enumerate() {
             check_shape(&surface.shape).map_err(|message| Flaw::new(Part::Surface(index), message))?;
@@ -135,7 +137,7 @@ fn check_shape(shape: &Shape) -> Result<(), &'static str> {
         }
         Shape::Circle { center, .. } if !within(center) => Err("must be finite and at most 1000 km away"),
         Shape::Circle { radius, .. } if !(radius > 0.0 && radius <= EXTENT) => {
-            Err("radius must be above zero and at most 1000 km")
+            Err("must be above zero and at most 1000 km")
         }
         _ => Ok(()),
     }

@@ -69,23 +69,17 @@ impl Places<'_> {
     fn explain(&self, flaw: Flaw, top: &Section<'_>, path: &Entry<'_>) -> Error {
         let Flaw { part, message, surface } = flaw;
         let entry = match part {
-            Part::Whole => return self.whole(message, top),
-            Part::Surface(index) => self.surfaces.get(index),
-            Part::Opening(index) => self.openings.get(index),
-            Part::Path => Some(path),
+            Part::Whole => None,
+            Part::CriticalAngle => top.get("critical_angle"),
+            Part::Surface(index) => self.surfaces.get(index).cloned(),
+            Part::Opening(index) => self.openings.get(index).cloned(),
+            Part::Path => Some(path.clone()),
         };
         let obstacle = surface.and_then(|index| self.surfaces.get(index));
         let obstacle = obstacle.map(|entry| format!(" what line {} describes", entry.line())).unwrap_or_default();
         match entry {
             Some(entry) => entry.error(&format!("{message}{obstacle}")),
             None => top.error(message),
-        }
-    }
-
-    fn whole(&self, message: String, top: &Section<'_>) -> Error {
-        match top.get("critical_angle") {
-            Some(entry) if message.starts_with("critical_angle") => entry.error(&message),
-            _ => top.error(message),
         }
     }
 }
@@ -138,7 +132,7 @@ fn path(section: &Section<'_>) -> Result<Path> {
     let word = kind.text()?;
     let Some((_, keys)) = KINDS.iter().find(|(name, _)| *name == word) else {
         let names = KINDS.map(|(name, _)| name).join(", ");
-        return Err(kind.error(&format!("`{}`: expected one of {names}", units::shorten(word))));
+        return Err(kind.error(&format!("expected one of {names}")));
     };
     section.only(&[&PATH, keys])?;
     let at = |key| point(&section.require(key)?);
@@ -192,6 +186,5 @@ fn point(entry: &Entry<'_>) -> Result<Point2<f64>> {
 fn material(entry: &Entry<'_>) -> Result<Material> {
     let name = entry.text()?;
     let names = Material::ALL.map(Material::name).join(", ");
-    Material::from_name(name)
-        .ok_or_else(|| entry.error(&format!("`{}`: no such material; expected one of {names}", units::shorten(name))))
+    Material::from_name(name).ok_or_else(|| entry.error(&format!("no such material; expected one of {names}")))
 }

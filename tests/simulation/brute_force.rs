@@ -270,12 +270,12 @@ fn along(shape: &Shape, at: f64) -> Point2<f64> {
 fn foot(from: Point2<f64>, shape: &Shape) -> Option<Point2<f64>> {
     let length = shape.length();
     let distance = |at: f64| (along(shape, at) - from).norm();
-    let start = (0..=400)
-        .map(|sample| length * f64::from(sample) / 400.0)
+    let start = (0..=64)
+        .map(|sample| length * f64::from(sample) / 64.0)
         .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
     // The slope of the distance changes its sign between these.
     let slope = |at: f64| (along(shape, at) - from).dot(&(along(shape, at + 1e-6) - along(shape, at - 1e-6)));
-    let (mut low, mut high) = (start - length / 400.0, start + length / 400.0);
+    let (mut low, mut high) = (start - length / 64.0, start + length / 64.0);
     for _ in 0..80 {
         let middle = (low + high) / 2.0;
         if slope(middle) < 0.0 { low = middle } else { high = middle }

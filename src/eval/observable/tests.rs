@@ -97,6 +97,7 @@ fn without_anything_to_see_there_is_no_coverage() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn moving_everything_together_changes_nothing(x in -1e3..1e3_f64, y in -1e3..1e3_f64, turn in -3.0..3.0_f64) {
         let motion = Isometry2::new(Vector2::new(x, y), turn);

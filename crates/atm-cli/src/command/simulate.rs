@@ -26,11 +26,20 @@ pub fn run(args: &Simulate) -> Result<Outcome, Failure> {
     let world = World::load(&args.world, &args.parameters()).map_err(|error| refused(args, error))?;
     let simulation = Simulation::new(world, rig, args.fov.field_of_view(), args.noise, args.seed);
     let mut tables = Tables::create(args, simulation.rig())?;
-    for sweep in simulation.sweeps() {
-        tables.write(simulation.rig(), &sweep?)?;
-    }
-    tables.commit()?;
+    let partials = tables.partials();
+    let driven = simulation.sweeps().try_for_each(|sweep| tables.write(simulation.rig(), &sweep?));
+    driven.and_then(|()| tables.commit()).map_err(|error| unfinished(error, &partials))?;
     Ok(Outcome::Done)
+}
+
+/// What is said of a drive that did not end well: why, and where what it had written is.
+fn unfinished(error: Error, partials: &[String]) -> Failure {
+    match Failure::from(error) {
+        Failure::Failed(message) if !partials.is_empty() => {
+            Failure::Failed(format!("{message}\natm: what was driven until then is in {}", partials.join(" and ")))
+        }
+        failure => failure,
+    }
 }
 
 /// A wrong parameter is a wrong argument where the world is built in.
@@ -95,6 +104,13 @@ impl Tables {
             }
         }
         Ok(())
+    }
+
+    /// The files that hold what was written until [`Tables::commit`].
+    fn partials(&self) -> Vec<String> {
+        let truth = self.truth.as_ref().map(|(table, _)| table.get_ref());
+        let outputs = std::iter::once(self.log.get_ref()).chain(truth);
+        outputs.filter_map(Output::partial_path).map(|path| path.display().to_string()).collect()
     }
 
     /// Puts the files under their names.
