@@ -153,6 +153,12 @@ pub enum Error {
         /// What is wrong.
         message: String,
     },
+    /// A map that can't be had.
+    #[error("{message}")]
+    Map {
+        /// What is wrong, and what would do.
+        message: String,
+    },
     /// The first unusable record, where that is to end the run.
     #[error("{problem}")]
     Strict {

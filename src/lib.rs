@@ -5,12 +5,15 @@
 
 pub use atm_core as core;
 
+pub mod baseline;
+pub mod compare;
 pub mod draw;
 pub mod error;
 pub mod eval;
 pub mod intake;
 pub mod job;
 pub mod log;
+pub mod map;
 pub mod pipeline;
 pub mod rig;
 pub mod simulate;

@@ -74,6 +74,11 @@ impl<'a> Judge<'a> {
         Scores { all: self.metrics(&estimates.iter().collect::<Vec<_>>()), by_kind: by_kind.collect() }
     }
 
+    /// The share of the observable surface that these points cover; `None` where nothing could be observed.
+    pub fn coverage(&self, points: impl IntoIterator<Item = Point2<f64>>) -> Option<f64> {
+        self.observable.coverage(points)
+    }
+
     fn metrics(&self, estimates: &[&Estimate]) -> Metrics {
         let points: Vec<Point2<f64>> = estimates.iter().map(|estimate| estimate.position).collect();
         let distances: Vec<f64> = points.iter().map(|point| self.world.distance(*point)).collect();

@@ -66,6 +66,7 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
         Command::Info(args) => command::info::run(args),
         Command::Simulate(args) => command::simulate::run(args),
         Command::Eval(args) => command::eval::run(args),
+        Command::Compare(args) => command::compare::run(args),
         Command::Draw(args) => command::draw::run(args),
     };
     match result {

@@ -1,5 +1,6 @@
 //! What can stand on the command line, one file a command.
 
+mod compare;
 mod draw;
 mod eval;
 mod fuse;
@@ -12,11 +13,11 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub use self::{
+    compare::Compare,
     draw::{Draw, PanelSpec},
     eval::Eval,
     fuse::{Emit, Fuse},
     info::Info,
-    log::Format,
     plan::Plan,
     simulate::Simulate,
 };
@@ -47,6 +48,8 @@ pub enum Command {
     Simulate(Simulate),
     /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
     Eval(Eval),
+    /// Every method on one log, side by side
+    Compare(Box<Compare>),
     /// Draw walls, path, arcs, crossings and echoes
     Draw(Box<Draw>),
 }

@@ -3,6 +3,7 @@
 use std::{fmt::Display, str::FromStr};
 
 use atm::{
+    compare::Name,
     core::{Beam, Kind, MinAngle, RangeResolution, Travel},
     storage::LatestSlots,
     units,
@@ -99,4 +100,9 @@ pub fn parameter(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err(format!("{text} is not KEY=VALUE, like opening=36in")),
     }
+}
+
+pub fn method(text: &str) -> Result<Name, String> {
+    let known = || Name::ALL.map(Name::word).join(", ");
+    Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
 }

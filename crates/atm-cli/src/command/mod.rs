@@ -1,5 +1,6 @@
 //! One file a command, each a thin adapter over the library.
 
+pub mod compare;
 pub mod draw;
 pub mod eval;
 pub mod fuse;

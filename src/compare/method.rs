@@ -1,0 +1,179 @@
+//! The methods by name.
+
+use atm_core::{Kind, Limits, MinAngle, OnNone, OnTwo, TransversalMedian};
+
+use crate::{
+    baseline::{
+        CELL, Centerline, CommonTangents, ConstantDepth, DirectionalMaximum, Elfes, Himm, Interleave, Intersections,
+        Method, MoravecElfes, Morphology, RangeLayer, TriangulationFusion, UniformArcs, Voting,
+    },
+    error::Result,
+    pipeline::Emit,
+};
+
+/// What can be chosen for all methods.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// H of the local map of the arc-transversal median.
+    pub history: usize,
+    /// θmin of the arc-transversal median.
+    pub min_angle: MinAngle<f64>,
+    /// Width of the cells of every grid, in metres; the method's own where it is not given.
+    pub cell: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { history: 10, min_angle: MinAngle::PAPER, cell: None }
+    }
+}
+
+/// A method, with its options where it has some.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Name {
+    /// The arc-transversal median as in the paper.
+    Atm,
+    /// The same, of which only the kinds `median` and `single` are kept.
+    AtmMedianSingle,
+    /// The same, where an arc that nothing crosses gives nothing.
+    AtmNoneDrop,
+    /// The same, where an arc with two crossings gives its centre.
+    AtmTwoCenter,
+    /// The same, where an arc with two crossings gives their mean.
+    AtmTwoMean,
+    /// The same without delay: each echo from the arcs before it.
+    AtmLatest,
+    /// See [`Centerline`].
+    Centerline,
+    /// See [`Interleave`].
+    Interleave,
+    /// See [`Intersections`].
+    Intersections,
+    /// See [`UniformArcs`].
+    Uniform,
+    /// See [`MoravecElfes`].
+    MoravecElfes,
+    /// See [`Elfes`].
+    Elfes,
+    /// See [`Himm`].
+    Himm,
+    /// See [`CommonTangents`].
+    McKerrow,
+    /// See [`ConstantDepth`].
+    Rcd,
+    /// See [`TriangulationFusion`].
+    Tbf,
+    /// See [`Voting`].
+    Voting,
+    /// See [`Morphology`].
+    Morphology,
+    /// See [`DirectionalMaximum`].
+    DirectionalMaximum,
+    /// See [`RangeLayer`].
+    RangeLayer,
+}
+
+/// A run of the arc-transversal median.
+pub(super) struct AtmRun {
+    pub(super) emit: Emit,
+    pub(super) estimator: TransversalMedian<f64>,
+    /// Whether only these kinds are kept.
+    pub(super) keep: &'static [Kind],
+}
+
+/// Kinds that need a crossing.
+const CROSSED: &[Kind] = &[Kind::Median, Kind::Single];
+
+impl Name {
+    /// All of them, in the order in which they are listed.
+    pub const ALL: [Self; 20] = [
+        Self::Atm,
+        Self::AtmMedianSingle,
+        Self::AtmNoneDrop,
+        Self::AtmTwoCenter,
+        Self::AtmTwoMean,
+        Self::AtmLatest,
+        Self::Centerline,
+        Self::Interleave,
+        Self::Intersections,
+        Self::McKerrow,
+        Self::Rcd,
+        Self::Tbf,
+        Self::DirectionalMaximum,
+        Self::Uniform,
+        Self::MoravecElfes,
+        Self::Elfes,
+        Self::Himm,
+        Self::Voting,
+        Self::Morphology,
+        Self::RangeLayer,
+    ];
+
+    /// Its word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Atm => "atm",
+            Self::AtmMedianSingle => "atm-median-single",
+            Self::AtmNoneDrop => "atm-none-drop",
+            Self::AtmTwoCenter => "atm-two-center",
+            Self::AtmTwoMean => "atm-two-mean",
+            Self::AtmLatest => "atm-latest",
+            Self::Centerline => "centerline",
+            Self::Interleave => "interleave",
+            Self::Intersections => "intersections",
+            Self::Uniform => "uniform",
+            Self::MoravecElfes => "moravec-elfes",
+            Self::Elfes => "elfes",
+            Self::Himm => "himm",
+            Self::McKerrow => "mckerrow",
+            Self::Rcd => "rcd",
+            Self::Tbf => "tbf",
+            Self::Voting => "voting",
+            Self::Morphology => "morphology",
+            Self::DirectionalMaximum => "directional-maximum",
+            Self::RangeLayer => "range-layer",
+        }
+    }
+
+    /// The method of this word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|name| name.word() == word)
+    }
+
+    /// How the pipeline is to run, if it is the arc-transversal median.
+    pub(super) fn atm(self, options: &Options) -> Option<AtmRun> {
+        let paper = TransversalMedian { min_angle: options.min_angle, ..TransversalMedian::PAPER };
+        let run = |estimator| AtmRun { emit: Emit::Settled, estimator, keep: &Kind::ALL };
+        Some(match self {
+            Self::Atm => run(paper),
+            Self::AtmMedianSingle => AtmRun { keep: CROSSED, ..run(paper) },
+            Self::AtmNoneDrop => run(TransversalMedian { on_none: OnNone::Drop, ..paper }),
+            Self::AtmTwoCenter => run(TransversalMedian { on_two: OnTwo::Center, ..paper }),
+            Self::AtmTwoMean => run(TransversalMedian { on_two: OnTwo::Mean, ..paper }),
+            Self::AtmLatest => AtmRun { emit: Emit::Latest, ..run(paper) },
+            _ => return None,
+        })
+    }
+
+    /// A new one of the other methods, for sensors with these range limits; `None` for the arc-transversal median.
+    pub(super) fn method(self, options: &Options, limits: Vec<Limits<f64>>) -> Result<Option<Box<dyn Method>>> {
+        let cell = options.cell.unwrap_or(CELL);
+        Ok(Some(match self {
+            Self::Centerline => Box::new(Centerline::default()),
+            Self::Interleave => Box::new(Interleave::default()),
+            Self::Intersections => Box::new(Intersections::default()),
+            Self::Uniform => Box::new(UniformArcs::new(cell, limits)?),
+            Self::MoravecElfes => Box::new(MoravecElfes::new(cell, limits)),
+            Self::Elfes => Box::new(Elfes::new(cell, limits)?),
+            Self::Himm => Box::new(Himm::new(options.cell.unwrap_or(Himm::CELL), limits)?),
+            Self::McKerrow => Box::new(CommonTangents::default()),
+            Self::Rcd => Box::new(ConstantDepth::default()),
+            Self::Tbf => Box::new(TriangulationFusion::default()),
+            Self::Voting => Box::new(Voting::new(cell)?),
+            Self::Morphology => Box::new(Morphology::new(cell)?),
+            Self::DirectionalMaximum => Box::new(DirectionalMaximum::new(cell)),
+            Self::RangeLayer => Box::new(RangeLayer::new(cell)?),
+            _ => return Ok(None),
+        }))
+    }
+}
