@@ -2,11 +2,14 @@
 //!
 //! A message's way in: records (in chunks or not) → decoder (by the channel's schema) → a reading waits for its turn, a
 //! transform or pose goes into the tree of frames → the reading is placed, and handed on as a record.
+mod arena;
 mod body;
+mod chunk;
 mod clocks;
 mod decode;
 mod fields;
 mod history;
+mod op;
 mod options;
 mod order;
 mod plane;

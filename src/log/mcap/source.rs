@@ -3,10 +3,11 @@
 use std::{fs::File, sync::Arc};
 
 use super::{
+    arena::Item,
     options::Options,
     raw::Tap,
     reader::Reader,
-    records::{Item, Limits, Records},
+    records::{Limits, Records},
     registry::Registry,
     topics::{self, is_clock, kind_of},
     window::Recording,

@@ -4,7 +4,8 @@ use std::io;
 
 use super::{
     fields::Fields,
-    records::{MAGIC, op},
+    op,
+    records::MAGIC,
     registry::Registry,
     window::{Recording, Window},
 };
