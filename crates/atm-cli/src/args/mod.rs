@@ -16,7 +16,6 @@ pub use self::{
     eval::Eval,
     fuse::{Emit, Fuse},
     info::Info,
-    log::Format,
     plan::Plan,
     simulate::Simulate,
 };
