@@ -1,10 +1,6 @@
 //! Simulated drives, and what becomes of their readings.
 
-use std::{
-    collections::BTreeMap,
-    f64::consts::{FRAC_PI_2, PI},
-    sync::Arc,
-};
+use std::{collections::BTreeMap, f64::consts::PI, sync::Arc};
 
 use atm::{
     core::{
@@ -112,6 +108,17 @@ impl Drive {
         };
         estimates.iter().filter_map(error).collect()
     }
+
+    /// The same for each crossing by itself.
+    pub fn crossing_errors(&self, fused: &Fused) -> Vec<f64> {
+        let error = |crossing: &ArcCrossing<f64>| {
+            let truth = self.source(crossing.t, crossing.sensor)?;
+            let reading =
+                self.readings.iter().find(|reading| (reading.t, reading.sensor) == (crossing.t, crossing.sensor));
+            Some((crossing.bearing.azimuth() - truth.azimuth).abs() * reading?.range.echo()? / INCH)
+        };
+        fused.crossings.iter().filter_map(error).collect()
+    }
 }
 
 impl Fused {
@@ -177,14 +184,16 @@ fn estimate(position: Point2<f64>, t: i64, sensor: u16, azimuth: f64, range: f64
     Estimate { position, key, azimuth: Some(azimuth), range: Some(range), kind: Some(Arc::from(kind)) }
 }
 
+/// A ring like the Nomad's, of another count of sensors and another reach.
+pub fn ring(count: usize, max_range: f64) -> Rig {
+    let nomad = Rig::builtin("nomad200").unwrap();
+    let first = &nomad.sensors()[0];
+    let ranging = Ranging { max_range, ..first.ranging() };
+    Rig::ring(count, first.mount().translation.vector.norm(), 0.0, ranging).unwrap()
+}
+
 /// The Nomad's ring with twice as many directions, as if the robot turned by half a beam at every place and took its readings
 /// once more (Fig. 5).
 pub fn interleaved() -> Rig {
-    let nomad = Rig::builtin("nomad200").unwrap();
-    let first = &nomad.sensors()[0];
-    let ranging = Ranging { ..first.ranging() };
-    Rig::ring(2 * nomad.sensors().len(), first.mount().translation.vector.norm(), 0.0, ranging).unwrap()
+    ring(32, 255.0 * INCH)
 }
-
-/// A quarter turn: where the sensor that looks straight at the wall on the left does.
-pub const LEFT: f64 = FRAC_PI_2;
