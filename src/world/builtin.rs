@@ -137,7 +137,7 @@ fn doorway(parameters: &Parameters<'_>, open: bool) -> Result<Scene> {
 }
 
 /// Two wide corridors that form a T, and a narrow one that goes on from its base (Figs. 21 and 22). The robot comes from the
-/// left, turns into the stem, and drives towards its base.
+/// left, turns into the stem, and drives through its base half way into the narrow one.
 fn tee(parameters: &Parameters<'_>) -> Result<Scene> {
     let opening = parameters.length("opening", inches(36.0))?;
     let width = parameters.length("width", inches(96.0))?;
@@ -165,7 +165,7 @@ fn tee(parameters: &Parameters<'_>) -> Result<Scene> {
         (-bar, -half),
         (-bar, half),
     ];
-    let stop = base + (stem / 3.0).min(inches(50.0));
+    let stop = base - depth / 2.0;
     Ok(Scene {
         surfaces: polyline(&outline, material),
         openings: vec![Opening { jambs: [Point2::new(-narrow, base), Point2::new(narrow, base)] }],

@@ -145,3 +145,30 @@ fn rotating_and_interleaving_does_not_help() {
     assert!(turned_error > 0.8 * error, "{turned_error} in against {error} in");
     assert!(turned_width <= width, "{turned_width} in against {width} in");
 }
+
+#[test]
+fn narrow_corridor_at_the_base_of_a_tee_is_found_on_the_way_through_it() {
+    let (mut centers, mut crossed, mut ahead, mut none) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for seed in SEEDS {
+        let mut drive = Drive::new("tee", &[], "", seed);
+        let jambs = drive.world.openings()[0].jambs;
+        centers.push(width(jambs, &drive.centers()));
+        crossed.push(width(jambs, &drive.fuse().crossed()));
+        // As far as 50 in before the base.
+        drive.readings.retain(|reading| reading.robot.y >= jambs[0].y + 50.0 * INCH);
+        let points: Vec<_> = drive.fuse().crossed().iter().map(|point| point.position).collect();
+        let gap = Gap::between(jambs, &points);
+        ahead.push(gap.width() / INCH);
+        none.push((gap.free.1 - gap.free.0) / INCH);
+    }
+    let row = |name: &str, widths: &[f64]| vec![name.to_owned(), cell(widths)];
+    let rows = [
+        row("centre of the cone, all the way", &centers),
+        row("`median` and `single`, all the way", &crossed),
+        row("`median` and `single`, up to 50 in before the base", &ahead),
+        row("the same, jambs marked or not", &none),
+    ];
+    page::shows("tee", &["points", "of 36 in"], &rows);
+    assert!(median(&centers) < 20.0 && median(&crossed) > 32.0);
+    assert!(percent(&crossed, |width| width >= 27.0) > 75.0);
+}
