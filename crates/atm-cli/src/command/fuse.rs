@@ -42,9 +42,9 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     let Ended { summary, pose_source, notes, result, partials } = ended?;
     if !matches!(&result, Err(error) if is_reader_gone(error)) {
         tell(args, pose_source.as_deref(), &summary, job.log.guesses_resolution());
-    }
-    for note in &notes {
-        report::say(format_args!("{note}"));
+        for note in &notes {
+            report::say(format_args!("{note}"));
+        }
     }
     result.map_err(|error| command::unfinished(error, "fused", &partials))?;
     Ok(if summary.is_clean() { Outcome::Done } else { Outcome::Partly })
