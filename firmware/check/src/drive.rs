@@ -2,11 +2,23 @@
 
 use std::f64::consts::PI;
 
-use atm::world::rough::{
-    Beam, DOORWAY_SEED, FIELD_OF_VIEW, OPENING_END, RING_RADIUS, RoughWorld, doorway_world, inches,
+use atm::{
+    error::Result,
+    simulate::{Beam, Scene},
+    units::inches,
+    world::World,
 };
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 use replay::{HEADER, SENSORS, Sweep};
+
+/// Seed of the sample log's world.
+const SEED: u64 = 1;
+/// Radius of the ring.
+const RING_RADIUS: f64 = inches(9.0);
+/// Full beam of one sensor, as wide as the step from one sensor to the next.
+const FIELD_OF_VIEW: f64 = PI / 8.0;
+/// Length of one weave: the far jamb of the opening.
+const WEAVE: f64 = inches(138.0);
 
 /// Lanes that are driven, the odd ones backwards along x.
 const LANES: u32 = 5;
@@ -16,13 +28,16 @@ const ALONG: u32 = 48;
 const TURN: u32 = 6;
 
 /// The log's bytes. The same on every machine: trigonometry goes through `libm`.
-pub fn record() -> Vec<u8> {
-    let world = doorway_world(DOORWAY_SEED);
+///
+/// # Errors
+/// None that is known: the world is built in.
+pub fn record() -> Result<Vec<u8>> {
+    let scene = Scene::new(World::load("doorway", &[])?, SEED);
     let mut log = HEADER.to_vec();
     for (number, (position, yaw)) in poses().into_iter().enumerate() {
-        log.extend(sweep(&world, number as u32, position, yaw).to_bytes());
+        log.extend(sweep(&scene, number as u32, position, yaw).to_bytes());
     }
-    log
+    Ok(log)
 }
 
 /// Where the robot is at each sweep: a weaving lane, half a turn, the next lane back.
@@ -32,7 +47,7 @@ fn poses() -> Vec<(Point2<f64>, f64)> {
         let middle = inches(8.0 * f64::from(lane) - 12.0);
         let backwards = lane % 2 == 1;
         let along = |step: u32| inches(5.0) * f64::from(if backwards { ALONG - step } else { step });
-        let weave = |x: f64| (inches(3.0) * libm::sin(x * 2.0 * PI / OPENING_END) + middle, x);
+        let weave = |x: f64| (inches(3.0) * libm::sin(x * 2.0 * PI / WEAVE) + middle, x);
         for step in 0..ALONG {
             let ((y, x), (ahead_y, ahead_x)) = (weave(along(step)), weave(along(step + 1)));
             poses.push((Point2::new(x, y), libm::atan2(ahead_y - y, ahead_x - x)));
@@ -47,13 +62,14 @@ fn poses() -> Vec<(Point2<f64>, f64)> {
     poses
 }
 
-fn sweep(world: &RoughWorld, number: u32, position: Point2<f64>, yaw: f64) -> Sweep {
+fn sweep(scene: &Scene, number: u32, position: Point2<f64>, yaw: f64) -> Sweep {
     let mut ranges = [f32::NAN; SENSORS];
     for (sensor, range) in (0u32..).zip(&mut ranges) {
         let look = yaw + FIELD_OF_VIEW * f64::from(sensor);
         let mount = Vector2::new(libm::cos(look), libm::sin(look)) * RING_RADIUS;
-        let beam = Beam::new(position + mount, look, FIELD_OF_VIEW);
-        *range = reading(world.reflection(&beam).map(|heard| heard.range));
+        let turn = UnitComplex::from_cos_sin_unchecked(libm::cos(look), libm::sin(look));
+        let beam = Beam::new(&Isometry2::from_parts((position + mount).into(), turn), FIELD_OF_VIEW);
+        *range = reading(scene.direct(&beam, f64::INFINITY).map(|heard| heard.range));
     }
     Sweep {
         milliseconds: number * 1000,

@@ -27,7 +27,7 @@ fn main() -> ExitCode {
 fn run(arguments: &[String]) -> Result<bool, Box<dyn Error>> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
-        ["record", log] => fs::write(log, drive::record()).map_err(|error| format!("{log}: {error}"))?,
+        ["record", log] => fs::write(log, drive::record()?).map_err(|error| format!("{log}: {error}"))?,
         ["judge", target, image, output, log, limits] => {
             return judge::judge(&judge::Exhibits { target, image, output, log, limits });
         }
