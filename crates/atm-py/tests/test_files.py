@@ -87,7 +87,7 @@ def test_unusable_records_are_counted(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def long_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A log that takes longer than signals and progress may wait."""
+    """A log of many batches."""
     n = 100_000
     k = np.arange(n)
     rows = np.stack([k / 1000, k % 16, np.full(n, 1.5), k * 1e-5, k * 0, k * 0], axis=1)
