@@ -95,3 +95,8 @@ fn fusing_takes_the_same_memory_for_six_times_the_recording() {
 fn info_takes_the_same_memory_for_six_times_the_recording() {
     peaks_are_equal(&["info", "-"], Layout::Chunks(None));
 }
+
+#[test]
+fn copying_takes_the_same_memory_for_six_times_the_recording() {
+    peaks_are_equal(&["fuse", "-", "--to", "mcap", "--passthrough"], Layout::Chunks(None));
+}

@@ -74,3 +74,15 @@ def test_positions_are_those_of_the_echoes(recording: Path, tmp_path: Path) -> N
     places = re.findall(r"\[(-?[\d.e-]+), (-?[\d.e-]+), (-?[\d.e-]+)\]", listing)
     x, y = float(first[2]), float(first[3])
     assert any(abs(float(place[0]) - x) < 1e-6 and abs(float(place[1]) - y) < 1e-6 for place in places), (x, y, places[:5])
+
+
+@pytest.mark.parametrize("schema", ["foxglove", "ros2"])
+def test_what_is_copied_beside_it_does_no_harm(schema: str, tmp_path: Path) -> None:
+    log, out, loaded = tmp_path / "drive.mcap", tmp_path / "out.mcap", tmp_path / "loaded.rrd"
+    for line in (["simulate", "doorway", "-o", log], ["fuse", log, "-o", out, "--passthrough", "--schema", schema]):
+        subprocess.run([os.environ["ATM"], *map(str, line)], capture_output=True, timeout=60, check=True)
+    rerun("mcap", "convert", out, "-o", loaded)
+    found = columns(rerun("rrd", "print", loaded)[0])
+    assert "Points3D:positions" in found["/atm/echoes"]
+    assert "Scalars:scalars" in found["/range/sensor_0"]
+    assert {"Transform3D:parent_frame", "Transform3D:child_frame"} <= found["/tf"]
