@@ -19,6 +19,14 @@ pub enum Format {
 }
 
 impl Format {
+    /// The ending of its files' names, without the dot.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Mcap => "mcap",
+        }
+    }
+
     /// What a file is by its name.
     pub fn of_name(path: &str) -> Self {
         if path.to_ascii_lowercase().ends_with(".mcap") { Self::Mcap } else { Self::Csv }

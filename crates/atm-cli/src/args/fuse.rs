@@ -1,3 +1,5 @@
+use std::{num::NonZeroUsize, path::PathBuf};
+
 use atm::{
     core::{Bounds, DomainError, Kind, MinAngle, OnNone, OnTwo, RangeResolution, Travel},
     log::mcap::write::SchemaKind,
@@ -16,11 +18,18 @@ Long tables have the columns t,sensor,range,x,y,yaw, wide ones t,x,y,yaw and one
 Out comes t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance. For driving, --keep median,single: \
 a reading without crossings falls back to the centre of its cone, and shuts openings as the cone does.")]
 pub struct Fuse {
-    /// The log: a path, or - for standard input
-    pub input: String,
+    /// The log: a path, or - for standard input. Several with --out-dir
+    #[arg(required = true, value_name = "INPUT")]
+    pub inputs: Vec<String>,
     /// Where the echoes go: a path, or - for standard output
-    #[arg(short, long, value_name = "OUT", default_value = "-")]
+    #[arg(short, long, value_name = "OUT", default_value = "-", conflicts_with = "out_dir")]
     pub output: String,
+    /// Fuse each log on its own, into a file of its name in this directory
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["crossings", "summary", "poses"])]
+    pub out_dir: Option<PathBuf>,
+    /// With --out-dir: logs that are fused at the same time [default: one for each core]
+    #[arg(short, long, value_name = "N", requires = "out_dir")]
+    pub jobs: Option<NonZeroUsize>,
     /// Format of the input, instead of what its content says
     #[arg(long, value_enum)]
     pub from: Option<Format>,

@@ -1,4 +1,5 @@
 //! `atm fuse`: a log in, echoes out.
+mod fleet;
 
 use atm::{
     core::{Kind, MinAngle, TransversalMedian},
@@ -18,17 +19,13 @@ const MANY_NEAR: f64 = 0.2;
 
 /// Runs the command.
 pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
-    let job = FuseJob {
-        log: args.log.job(&args.input, args.from, args.range_resolution)?,
-        rig_file: args.log.rig.clone(),
-        output: Some(args.output.clone()),
-        to: args.to.map(Into::into),
-        crossings: args.crossings.clone(),
-        summary: args.summary.clone(),
-        keep: (!args.keep.is_empty()).then(|| args.keep.clone()),
-        schema: args.schema.into(),
-        passthrough: args.passthrough,
+    if let Some(directory) = &args.out_dir {
+        return fleet::run(args, directory);
+    }
+    let [input] = &args.inputs[..] else {
+        return Err(Failure::Usage("several logs are fused into a directory: name it with --out-dir".into()));
     };
+    let job = job(args, input, args.output.clone())?;
     let settings = settings(args, &job.log.models()?)?;
     let mut bar = None;
     let mut progress = |bytes, length| {
@@ -39,18 +36,48 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let Ended { summary, pose_source, notes, result, partials } = ended?;
-    if !matches!(&result, Err(error) if is_reader_gone(error)) {
-        tell(args, pose_source.as_deref(), &summary, job.log.guesses_resolution());
-        for note in &notes {
-            report::say(format_args!("{note}"));
-        }
+    let (words, outcome) = said(args, &job, ended);
+    for word in &words {
+        report::say(format_args!("{word}"));
     }
-    result.map_err(|error| command::unfinished(error, "fused", &partials))?;
-    Ok(if summary.is_clean() { Outcome::Done } else { Outcome::Partly })
+    outcome
 }
 
-fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings, Failure> {
+/// One log's run.
+pub(super) fn job(args: &Fuse, input: &str, output: String) -> Result<FuseJob, Failure> {
+    Ok(FuseJob {
+        log: args.log.job(input, args.from, args.range_resolution)?,
+        rig_file: args.log.rig.clone(),
+        output: Some(output),
+        to: args.to.map(Into::into),
+        crossings: args.crossings.clone(),
+        summary: args.summary.clone(),
+        keep: (!args.keep.is_empty()).then(|| args.keep.clone()),
+        schema: args.schema.into(),
+        passthrough: args.passthrough,
+    })
+}
+
+/// What a person is told of a run that has ended, and how it ended.
+pub(super) fn said(
+    args: &Fuse,
+    job: &FuseJob,
+    ended: atm::error::Result<Ended>,
+) -> (Vec<String>, Result<Outcome, Failure>) {
+    let Ended { summary, pose_source, notes, result, partials } = match ended {
+        Ok(ended) => ended,
+        Err(error) => return (Vec::new(), Err(error.into())),
+    };
+    let mut words = Vec::new();
+    if !matches!(&result, Err(error) if is_reader_gone(error)) {
+        words = counted(args, pose_source.as_deref(), &summary, job.log.guesses_resolution());
+        words.extend(notes);
+    }
+    let outcome = if summary.is_clean() { Outcome::Done } else { Outcome::Partly };
+    (words, result.map(|()| outcome).map_err(|error| command::unfinished(error, "fused", &partials)))
+}
+
+pub(super) fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings, Failure> {
     let usage = |error: atm::core::DomainError| Failure::Usage(error.to_string());
     let min_angle = match (args.min_angle, args.improvement, args.at) {
         (Some(angle), ..) => angle,
@@ -71,22 +98,20 @@ fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings, Failure> {
     })
 }
 
-/// Says what was counted, and what deserves a word.
-fn tell(args: &Fuse, pose_source: Option<&str>, summary: &Summary, guessed: bool) {
+/// What was counted, and what deserves a word.
+fn counted(args: &Fuse, pose_source: Option<&str>, summary: &Summary, guessed: bool) -> Vec<String> {
+    let mut words = Vec::new();
     if !args.quiet {
-        if let Some(source) = pose_source {
-            report::say(format_args!("poses     {source}"));
-        }
-        report::say(format_args!("{}", report::counts(summary)));
+        words.extend(pose_source.map(|source| format!("poses     {source}")));
+        words.push(report::counts(summary));
     }
-    if let Some(unusable) = report::unusable(&summary.dropped) {
-        report::say(format_args!("{unusable}"));
-    }
+    words.extend(report::unusable(&summary.dropped));
     let (near, total) = (summary.echoes.get(Kind::Near), summary.echoes.total());
     if guessed && near as f64 > MANY_NEAR * total as f64 {
-        report::say(format_args!(
+        words.push(format!(
             "warning: {near} of {total} echoes are near; a range resolution of 1in was assumed, say --range-resolution if \
              the ranges are finer"
         ));
     }
+    words
 }
