@@ -342,7 +342,7 @@ impl Table {
     fn pass_over(&mut self) -> Result<Problem> {
         self.line = self.parser.line();
         self.field_count = 0;
-        self.parser.reset();
+        begin(&mut self.parser);
         self.skip_line()?;
         let bytes = self.buffer.position() - self.record_byte;
         let value = format!("a record of {bytes} bytes; it may have {MAX_RECORD} bytes and {MAX_FIELDS} fields");
@@ -365,7 +365,15 @@ impl Table {
 }
 
 fn parser(delimiter: u8) -> csv_core::Reader {
-    ReaderBuilder::new().delimiter(delimiter).build()
+    let mut parser = ReaderBuilder::new().delimiter(delimiter).build();
+    begin(&mut parser);
+    parser
+}
+
+/// Begins a record. The first call of a parser would pass over a byte-order mark, if it got all of it at once: it gets a blank line.
+fn begin(parser: &mut csv_core::Reader) {
+    parser.reset();
+    parser.read_record(b"\n", &mut [0], &mut [0]);
 }
 
 /// The most frequent of [`DELIMITERS`] outside quotes, the earlier one where two are; a blank where there is none.

@@ -81,6 +81,20 @@ fn a_byte_order_mark_is_passed_over_but_counts_as_bytes() {
 }
 
 #[test]
+fn a_byte_order_mark_that_is_not_the_first_thing_is_text() {
+    let (second, later) = ("\u{feff}\u{feff}\r\ra,b\n", "#\n\n\u{feff}\r\ra,b\n");
+    let made: [fn(&'static str) -> Input; 2] = [|text| input(text), |text| stuttering(text)];
+    for made in made {
+        assert_eq!(records(table_of(made(second))), [at(1, 3, "\u{feff}"), at(3, 8, "a|b")]);
+        assert_eq!(records(table_of(made(later))), [at(3, 3, "\u{feff}"), at(5, 8, "a|b")]);
+    }
+    let mut long = vec![b'x'; MAX_RECORD + 1];
+    long.extend("\n\u{feff}\na,b\n".bytes());
+    let (after, problems) = read_all(&mut table_of(input(long)));
+    assert_eq!((after.len(), problems.len()), (2, 1));
+}
+
+#[test]
 fn quotes_hold_delimiters_line_ends_and_doubled_quotes() {
     let mut table = table_of(input("\"a,1\",\"b\"\"\"\n\"c\r\nd\",2\ne,f\n"));
     table.next_record(&mut |_| ()).unwrap();
