@@ -159,6 +159,9 @@ pub enum Error {
         /// What is wrong, and what would do.
         message: String,
     },
+    /// Whoever watches the run has ended it.
+    #[error("interrupted")]
+    Interrupted,
     /// The first unusable record, where that is to end the run.
     #[error("{problem}")]
     Strict {

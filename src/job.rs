@@ -71,6 +71,8 @@ impl McapWishes {
 pub struct LogJob {
     /// The log: a path, or `-` for standard input.
     pub input: String,
+    /// What opens the log and the second file's poses: [`Input::open`], or that with something around it.
+    pub opens: fn(&str) -> Result<Input>,
     /// Its format, instead of what its content says.
     pub from: Option<Format>,
     /// The sensors, where somebody says them.
@@ -127,7 +129,7 @@ impl LogJob {
     /// # Errors
     /// It can't be read.
     pub fn open(&self) -> Result<(Format, Input)> {
-        let (found, input) = Input::open(&self.input)?.sniff()?;
+        let (found, input) = (self.opens)(&self.input)?.sniff()?;
         // What was cut off before it could say what it is goes by its name.
         let is_cut = input.length.is_some_and(|length| length < MCAP_MAGIC.len() as u64);
         let found = if is_cut && Format::of_name(&self.input) == Format::Mcap { Format::Mcap } else { found };
@@ -165,7 +167,7 @@ impl LogJob {
     pub fn track(&self) -> Result<Option<(AnyTrack, &'static str)>> {
         let Some(path) = &self.poses else { return Ok(None) };
         let format = self.rig.as_deref().and_then(Rig::log).map(|formats| &formats.poses);
-        let log = PoseLog::new(Input::open(path)?, format)?;
+        let log = PoseLog::new((self.opens)(path)?, format)?;
         let kind = if log.is_tum() { "TUM" } else { "CSV" };
         Ok(Some((Track::new(Box::new(log), self.max_gap), kind)))
     }

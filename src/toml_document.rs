@@ -258,6 +258,16 @@ impl<'a> Entry<'a> {
         Section { document: self.document, header, prefix: format!("{}.", self.key), table, start: Some(start) }
     }
 
+    /// The values of an array of at most `most`.
+    pub(crate) fn items_up_to(&self, most: usize) -> Result<Vec<Entry<'a>>> {
+        match self.value.get_ref() {
+            DeValue::Array(array) if array.len() > most => {
+                Err(self.error(&format!("{} values: at most {most}", array.len())))
+            }
+            _ => self.items(),
+        }
+    }
+
     /// The values of an array.
     pub(crate) fn items(&self) -> Result<Vec<Entry<'a>>> {
         let DeValue::Array(array) = self.value.get_ref() else { return self.expected("an array") };

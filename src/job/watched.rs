@@ -8,7 +8,7 @@ use crate::{
     log::{Next, Row, Source},
 };
 
-/// Records between two reports.
+/// Records and readings between two reports.
 const BATCH: u32 = 256;
 
 /// A log that tells how far it was read, and can be stopped.
@@ -16,7 +16,7 @@ pub(super) struct Watched<'a, 'p> {
     log: &'a mut dyn Source,
     length: Option<u64>,
     progress: &'a mut Progress<'p>,
-    /// Records and bytes at the last report.
+    /// Records and readings since the last report, and the bytes at it.
     unwatched: u32,
     told: u64,
 }
@@ -40,7 +40,7 @@ impl<'a, 'p> Watched<'a, 'p> {
         if (self.progress)(position, self.length) {
             return Ok(());
         }
-        Err(Error::Settings { message: "interrupted".into() })
+        Err(Error::Interrupted)
     }
 }
 
@@ -50,7 +50,10 @@ impl Source for Watched<'_, '_> {
         if self.unwatched >= BATCH || self.log.position() >= self.told + STRETCH {
             self.tell()?;
         }
-        self.log.next_row(row, problems)
+        let next = self.log.next_row(row, problems);
+        // A record may take as long as it has readings.
+        self.unwatched = self.unwatched.saturating_add(u32::try_from(row.readings.len()).unwrap_or(u32::MAX));
+        next
     }
 
     fn drained(&self) -> bool {

@@ -2,11 +2,14 @@
 //!
 //! Quotes are read as `csv-core` reads them, and lines without a quote stay where they are; comments and blank lines are passed over here, so that each record's line
 //! and byte are those it really begins at.
+mod quotes;
+
 use std::{cell::Cell, io::Read, sync::Arc};
 
 use csv_core::{ReadRecordResult, ReaderBuilder};
-use memchr::{memchr, memchr_iter, memchr2, memrchr2};
+use memchr::{memchr, memchr2, memrchr2};
 
+use self::quotes::Quotes;
 pub use super::record::Record;
 use super::{Next, buffer::Buffer, line};
 use crate::error::{Error, Place, Problem, Reason, Result};
@@ -34,9 +37,9 @@ pub struct Table {
     line: u64,
     /// The last byte used was a carriage return that ended a line: a newline right after belongs to it.
     after_return: bool,
+    delimiter: u8,
     /// The delimiter is a run of blanks.
     blanks: bool,
-    delimiter: u8,
     parser: csv_core::Reader,
     /// The last record lies in the buffer, and is so many bytes long with the end of its line.
     in_place: Option<usize>,
@@ -60,8 +63,8 @@ impl Table {
             buffer: Buffer::new(reader, name),
             line: 1,
             after_return: false,
-            blanks: false,
             delimiter: b',',
+            blanks: false,
             parser: parser(b','),
             in_place: None,
             fields: vec![0; 1024],
@@ -196,18 +199,20 @@ impl Table {
 
     /// Whether there is no complete record in `rest`, line by line.
     fn holds_no_record(&self, mut rest: &[u8]) -> bool {
-        // After an odd number of quotes, a line end stands within quotes.
-        let (mut quotes, mut blank) = (0, true);
+        let mut record = Quotes::default();
         while let Some(at) = memchr2(b'\n', b'\r', rest) {
-            let (line, after) = rest.split_at(at);
-            let text = if self.blanks { line.trim_ascii_start() } else { line };
-            let comment = blank && text.starts_with(b"#");
-            if !comment {
-                quotes += memchr_iter(b'"', line).count();
-                blank &= line.trim_ascii().is_empty();
+            let (mut line, after) = rest.split_at(at);
+            if record.is_new() && self.blanks {
+                line = line.trim_ascii_start();
             }
-            if !blank && quotes % 2 == 0 {
-                return false;
+            if !(record.is_new() && line.starts_with(b"#")) {
+                record.take(line, self.delimiter);
+            }
+            if !record.are_open() {
+                if !record.may_be_blank() {
+                    return false;
+                }
+                record = Quotes::default();
             }
             rest = after.get(1..).unwrap_or_default();
         }

@@ -9,6 +9,7 @@ use nalgebra::{Isometry2, Translation2};
 use super::{Invalid, KIND, LogFormats, MAX_SENSORS, Ranging, Rig, Sensor, TableFormat, direction, ring_sensors};
 use crate::{
     error::Result,
+    log::table::MAX_FIELDS,
     stamp,
     toml_document::{Document, Entry, Section},
     units::Scale,
@@ -21,6 +22,8 @@ const RING: [&str; 3] = ["count", "radius", "first_yaw"];
 const SENSOR: [&str; 5] = ["id", "x", "y", "yaw", "topic"];
 const TABLE: [&str; 8] =
     ["header", "delimiter", "columns", "time_unit", "range_unit", "pose_unit", "yaw_unit", "no_echo"];
+/// Most values that stand for "no echo": each range is compared with all of them.
+const MAX_NO_ECHO: usize = 1000;
 /// Poses in a file of their own; only under `[log]`.
 const POSES: &str = "poses";
 
@@ -162,14 +165,14 @@ fn table_format(section: &Section<'_>, inherited: TableFormat, header: Option<En
         format.yaw = unit.quantity(Scale::angle)?;
     }
     if let Some(values) = section.get("no_echo") {
-        format.no_echo = values.items()?.iter().map(Entry::number).collect::<Result<_>>()?;
+        format.no_echo = values.items_up_to(MAX_NO_ECHO)?.iter().map(Entry::number).collect::<Result<_>>()?;
     }
     Ok(format)
 }
 
 /// Reads the names of the columns: at least one, no two alike.
 fn columns(entry: &Entry<'_>) -> Result<Vec<String>> {
-    let items = entry.items()?;
+    let items = entry.items_up_to(MAX_FIELDS)?;
     if items.is_empty() {
         return Err(entry.error("expected at least one name"));
     }

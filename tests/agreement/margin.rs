@@ -38,7 +38,7 @@ impl Margins {
     /// For θmin from 5° and coordinates up to 8 m, where neighbouring numbers are half a micrometre apart.
     pub const SINGLE: Self = Self {
         angle: 1e-4,
-        flat: 5e-3,
+        flat: 2e-2,
         length: 1e-5,
         path: 3e-6,
         step: 1e-6,

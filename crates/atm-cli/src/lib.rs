@@ -2,6 +2,7 @@
 
 mod args;
 mod command;
+mod interrupt;
 mod report;
 
 use std::{
@@ -12,7 +13,10 @@ use std::{
 use atm::error::Error;
 use clap::Parser;
 
-use crate::args::{Cli, Command};
+use crate::{
+    args::{Cli, Command},
+    interrupt::Interrupted,
+};
 
 /// How a run ended well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +36,8 @@ enum Failure {
     Failed(String),
     /// Whoever read the output has closed it: nothing to say.
     ReaderGone,
+    /// A signal ended it, with what is to be said of that.
+    Interrupted(Interrupted, String),
 }
 
 /// Whether it is that whoever read the output has closed it.
@@ -43,6 +49,9 @@ impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match &error {
             _ if is_reader_gone(&error) => Self::ReaderGone,
+            _ if let Some(interrupted) = Interrupted::of(&error) => {
+                Self::Interrupted(interrupted, interrupted.to_string())
+            }
             Error::Settings { .. } => Self::Usage(error.to_string()),
             _ => Self::Failed(error.to_string()),
         }
@@ -51,6 +60,8 @@ impl From<Error> for Failure {
 
 /// Runs the command line `args`, the program's name first, and returns the exit status: 0 done, 1 failed, 2 wrong
 /// arguments, 3 done but part of the input was unusable.
+///
+/// A signal that ends a run early (SIGINT, SIGTERM) ends the process here, once everything is said, as if nobody had caught it.
 pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
@@ -75,6 +86,10 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
         Err(Failure::Failed(message)) => {
             report::say(format_args!("atm: {message}"));
             1
+        }
+        Err(Failure::Interrupted(interrupted, message)) => {
+            report::say(format_args!("atm: {message}"));
+            interrupted.end()
         }
         Err(Failure::Usage(message)) => {
             report::say(format_args!("atm: {message}"));

@@ -4,6 +4,7 @@ use atm::{
     core::{Beam, Bounds, MinAngle, RangeResolution, TransversalMedian},
     job::{FuseJob, LogJob, MAX_GAP, McapWishes},
     log::{
+        Input,
         csv::EmptyCell,
         format::Format,
         mcap::{ClockChoice, write::SchemaKind},
@@ -198,6 +199,7 @@ pub fn fuse_file<'py>(
     let job = FuseJob {
         log: LogJob {
             input: argument::path("input", input)?,
+            opens: Input::open,
             from: from_.map(|word| argument::choice("from_", word, &formats)).transpose()?,
             rig: rig.map(rig_of).transpose()?,
             poses: path("poses", poses)?,

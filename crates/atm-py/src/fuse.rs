@@ -57,7 +57,7 @@ impl Source for ArraySource<'_, '_> {
         if self.unwatched >= MOST_IN_A_ROW {
             self.unwatched = 0;
             if self.watch.is_over(|_| Ok(())) {
-                return Err(Error::Settings { message: "interrupted".into() });
+                return Err(Error::Interrupted);
             }
         }
         row.t = self.readings.time(first);

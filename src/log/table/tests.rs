@@ -1,3 +1,5 @@
+use std::{cell::Cell, rc::Rc};
+
 use proptest::prelude::*;
 
 use super::*;
@@ -238,6 +240,34 @@ fn a_table_knows_when_it_has_to_wait() {
 }
 
 #[test]
+fn a_quote_opens_a_field_only_at_its_start() {
+    // The one within a field is text: the two of them do not close one another.
+    assert_eq!(waits(&["a,b\n1\",\"2\n", "3\",4\n"]), [true, true]);
+    assert_eq!(waits(&["a,b\n1\",2\n", "3,4\n"]), [false, true, true]);
+    // Behind a closed field, text and quotes are text.
+    assert_eq!(waits(&["a,b\n\"1\"x\",2\n", "3,4\n"]), [false, true, true]);
+    assert_eq!(waits(&["a,b\n\"1\"\"\n\",2\n", "3,4\n"]), [false, true, true]);
+}
+
+#[test]
+fn a_record_of_an_empty_field_is_no_record_to_wait_for() {
+    assert_eq!(waits(&["a,b\n\"\"\n\" \n\"\n", "3,4\n"]), [true, true]);
+}
+
+/// Counts the reads.
+struct Counted {
+    reader: Box<dyn Read>,
+    reads: Rc<Cell<u64>>,
+}
+
+impl Read for Counted {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+        self.reads.set(self.reads.get() + 1);
+        self.reader.read(out)
+    }
+}
+
+#[test]
 fn the_position_counts_every_byte() {
     let text = "\u{feff}a,b\r\n\r\n# comment\r\n1,2\r\n\r\n";
     let mut table = table_of(input(text));
@@ -255,6 +285,20 @@ proptest! {
             read_all(&mut table)
         };
         prop_assert_eq!(read(input(text.clone())), read(stuttering(text)));
+    }
+
+    #[test]
+    fn a_table_that_need_not_wait_does_not(text in "[a1,\"\r\n# \t]{1,80}", blanks: bool) {
+        let reads = Rc::new(Cell::new(0));
+        let reader = Box::new(Counted { reader: stuttering(text).reader, reads: Rc::clone(&reads) });
+        let mut table = Table::new(reader, Arc::from("pipe"))?;
+        table.set_delimiter(Some(if blanks { b' ' } else { b',' }))?;
+        let mut next = Next::Record;
+        while next == Next::Record {
+            let (waits, before) = (table.drained(), reads.get());
+            next = table.next_record(&mut |_| ())?;
+            prop_assert!(waits || reads.get() == before);
+        }
     }
 
     #[test]

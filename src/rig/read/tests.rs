@@ -329,6 +329,14 @@ fn units_of_a_table_are_checked() {
 }
 
 #[test]
+fn lists_are_bounded() {
+    let said = log_said(&format!("no_echo = [{}]", "1, ".repeat(1001)));
+    assert_eq!(said, "r.toml:5: `log.no_echo` = [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, …: 1001 values: at most 1000");
+    let names: Vec<String> = (0..=MAX_FIELDS).map(|index| format!("\"{index}\"")).collect();
+    assert!(log_said(&format!("columns = [{}]", names.join(","))).ends_with("131073 values: at most 131072"));
+}
+
+#[test]
 fn no_echo_values_are_finite_numbers() {
     assert_eq!(log_said("no_echo = [1, nan]"), "r.toml:5: `log.no_echo` = nan: must be finite");
     assert_eq!(

@@ -7,7 +7,7 @@ use atm::{
     error::Result,
     intake::Defaults,
     job::{LogJob, McapWishes},
-    log::{csv::EmptyCell, format, mcap::ClockChoice},
+    log::{Input, csv::EmptyCell, format, mcap::ClockChoice},
     rig::Rig,
 };
 use clap::{Args, ValueEnum};
@@ -81,6 +81,7 @@ impl LogArgs {
     ) -> Result<LogJob> {
         Ok(LogJob {
             input: input.to_owned(),
+            opens: Input::open,
             from: from.map(format::Format::from),
             rig: self.rig.as_deref().map(Rig::load).transpose()?.map(Arc::new),
             poses: self.poses.clone(),

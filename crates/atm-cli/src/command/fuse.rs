@@ -3,7 +3,7 @@ mod fleet;
 
 use atm::{
     core::{Kind, MinAngle, TransversalMedian},
-    job::{Ended, FuseJob},
+    job::{Ended, FuseJob, LogJob},
     pipeline::{self, Emit, SensorModel, Settings},
     summary::Summary,
 };
@@ -11,7 +11,7 @@ use atm::{
 use crate::{
     Failure, Outcome,
     args::{self, Fuse},
-    command, is_reader_gone, report,
+    command, interrupt, is_reader_gone, report,
 };
 
 /// Share of echoes of kind `near` above which a guessed range resolution deserves a word.
@@ -30,7 +30,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     let mut bar = None;
     let mut progress = |bytes, length| {
         bar.get_or_insert_with(|| report::progress(length, args.quiet)).set_position(bytes);
-        true
+        interrupt::caught().is_none()
     };
     let ended = job.run(&settings, &mut progress);
     if let Some(bar) = bar {
@@ -46,7 +46,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
 /// One log's run.
 pub(super) fn job(args: &Fuse, input: &str, output: String) -> Result<FuseJob, Failure> {
     Ok(FuseJob {
-        log: args.log.job(input, args.from, args.range_resolution)?,
+        log: LogJob { opens: interrupt::open, ..args.log.job(input, args.from, args.range_resolution)? },
         rig_file: args.log.rig.clone(),
         output: Some(output),
         to: args.to.map(Into::into),

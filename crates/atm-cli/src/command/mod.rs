@@ -14,10 +14,13 @@ use crate::Failure;
 
 /// What is said of a run that did not end well: why, and where what it had written is.
 fn unfinished(error: Error, done: &str, partials: &[String]) -> Failure {
+    let kept = |message: String| match partials {
+        [] => message,
+        partials => format!("{message}\natm: what was {done} until then is in {}", partials.join(" and ")),
+    };
     match Failure::from(error) {
-        Failure::Failed(message) if !partials.is_empty() => {
-            Failure::Failed(format!("{message}\natm: what was {done} until then is in {}", partials.join(" and ")))
-        }
+        Failure::Failed(message) => Failure::Failed(kept(message)),
+        Failure::Interrupted(interrupted, message) => Failure::Interrupted(interrupted, kept(message)),
         failure => failure,
     }
 }

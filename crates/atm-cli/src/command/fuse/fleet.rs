@@ -16,7 +16,7 @@ use atm::{error::Error, job::FuseJob, log::format::Format, pipeline::Settings};
 use indicatif::ProgressBar;
 
 use super::{job, said, settings};
-use crate::{Failure, Outcome, args::Fuse, report};
+use crate::{Failure, Outcome, args::Fuse, interrupt, report};
 
 /// What is told of one log, and how it ended.
 type Told = (Vec<String>, Result<Outcome, Failure>);
@@ -32,15 +32,22 @@ pub fn run(args: &Fuse, directory: &Path) -> Result<Outcome, Failure> {
     fs::create_dir_all(directory)
         .map_err(|source| Error::Io { file: directory.display().to_string().into(), source })?;
     let bar = report::progress(length(&args.inputs), args.quiet);
-    let (mut failed, mut partly) = (0, false);
+    let (mut done, mut failed, mut partly) = (0, 0, false);
     fuse_all(args, &jobs, &settings, &bar, &mut |job, (words, outcome)| {
         bar.suspend(|| tell(job, &words, &outcome));
         match outcome {
-            Ok(outcome) => partly |= outcome == Outcome::Partly,
+            Ok(outcome) => {
+                done += 1;
+                partly |= outcome == Outcome::Partly;
+            }
             Err(_) => failed += 1,
         }
     });
     bar.finish_and_clear();
+    if let Some(interrupted) = interrupt::caught().filter(|_| done < jobs.len()) {
+        let message = format!("{interrupted}: {done} of {} logs are fused", jobs.len());
+        return Err(Failure::Interrupted(interrupted, message));
+    }
     match failed {
         0 if partly => Ok(Outcome::Partly),
         0 => Ok(Outcome::Done),
@@ -86,7 +93,8 @@ fn fuse_all(
         for _ in 0..workers {
             let sender = sender.clone();
             scope.spawn(move || {
-                loop {
+                // A log that was begun is told of; after a signal, no further one is begun.
+                while interrupt::caught().is_none() {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(job) = jobs.get(index) else { return };
                     // Whoever listens does so until the last worker is done.
@@ -114,7 +122,7 @@ fn fuse(args: &Fuse, job: &FuseJob, settings: &Settings, bar: &ProgressBar) -> T
     let run = job.run(settings, &mut |bytes, _| {
         bar.inc(bytes.saturating_sub(done));
         done = done.max(bytes);
-        true
+        interrupt::caught().is_none()
     });
     said(args, job, run)
 }
@@ -123,7 +131,7 @@ fn fuse(args: &Fuse, job: &FuseJob, settings: &Settings, bar: &ProgressBar) -> T
 fn tell(job: &FuseJob, words: &[String], outcome: &Result<Outcome, Failure>) {
     let (input, output) = (&job.log.input, job.output.as_deref().unwrap_or_default());
     let error = match outcome {
-        Err(Failure::Failed(message) | Failure::Usage(message)) => Some(message),
+        Err(Failure::Failed(message) | Failure::Usage(message) | Failure::Interrupted(_, message)) => Some(message),
         _ => None,
     };
     if !words.is_empty() {
