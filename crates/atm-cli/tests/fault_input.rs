@@ -85,7 +85,8 @@ fn any_bit_of_a_header_may_be_wrong() {
 fn a_pipe_may_drip() {
     let (log, expected) = (drive(400), undisturbed(&drive(400), &[]));
     let mut running = Running::start(&FUSE_STDIN, Stdio::piped(), Stdio::piped());
-    let (mut input, mut output) = (running.0.stdin.take().expect("an input"), running.0.stdout.take().expect("an output"));
+    let (mut input, mut output) =
+        (running.0.stdin.take().expect("an input"), running.0.stdout.take().expect("an output"));
     let mut rest = log.as_bytes();
     for length in (1..=7).cycle() {
         let (piece, after) = rest.split_at(length.min(rest.len()));

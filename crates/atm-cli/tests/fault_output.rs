@@ -83,7 +83,18 @@ fn a_small_file_system_that_fills_up_keeps_what_fits() {
         \"$0\" fuse \"$2\" --rig nomad200 -o \"$1/echoes.csv\"; status=$?
         cp \"$1/echoes.csv.partial\" \"$3\"; exit $status";
     let mut command = Command::new("unshare");
-    command.args(["--user", "--map-root-user", "--mount", "sh", "-c", script, env!("CARGO_BIN_EXE_atm"), &disk, &log, &saved]);
+    command.args([
+        "--user",
+        "--map-root-user",
+        "--mount",
+        "sh",
+        "-c",
+        script,
+        env!("CARGO_BIN_EXE_atm"),
+        &disk,
+        &log,
+        &saved,
+    ]);
     let ended = Running::start_as(&mut command, Stdio::null(), Stdio::null()).ends();
     if !matches!(ended.status.code(), Some(0 | 1 | 3)) {
         return skipped(&format!("no file system may be mounted here: {}", ended.stderr.trim()));
