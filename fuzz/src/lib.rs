@@ -5,6 +5,8 @@
 pub mod csv;
 pub mod fuser;
 pub mod layouts;
+pub mod mcap;
+pub mod messages;
 pub mod pieces;
 pub mod poses;
 pub mod rig;

@@ -23,6 +23,8 @@ pub(super) enum Item<'a> {
     Message(&'a Arc<Channel>, Message<'a>),
     Metadata(Metadata),
     Attachment(Attachment<'a>),
+    /// A record that nobody wants.
+    Nothing,
     /// Something that can't be used.
     Problem(Problem),
 }

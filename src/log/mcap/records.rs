@@ -136,11 +136,13 @@ impl Records {
     }
 
     /// The next item and where it, or its chunk, begins; `None` at the end. Errors where the file can't be read on.
+    ///
+    /// Takes one record in at most, so that a caller can look after its output before the file has to wait for more.
     pub(super) fn next(&mut self) -> Result<Option<(Item<'_>, u64)>> {
         if self.arena.entries.is_empty() {
             self.arena.clear();
         }
-        while self.arena.entries.is_empty() {
+        if self.arena.entries.is_empty() {
             let stage = std::mem::replace(&mut self.stage, Stage::Ended);
             let next = match stage {
                 Stage::File(window) => self.file_record(window),
@@ -150,7 +152,7 @@ impl Records {
             };
             self.stage = next.map_err(|source| Error::Io { file: self.name.clone(), source })?;
         }
-        let Some(entry) = self.arena.entries.pop_front() else { return Ok(None) };
+        let Some(entry) = self.arena.entries.pop_front() else { return Ok(Some((Item::Nothing, self.position()))) };
         self.damaged |= matches!(entry.what, Kept::Problem(Reason::Truncated, _));
         let (byte, name) = (entry.byte, self.name.clone());
         let problem =

@@ -136,7 +136,7 @@ impl McapReadings {
             (Item::Header(profile, library), Some(tap)) => tap.header(profile, library)?,
             (Item::Metadata(metadata), Some(tap)) => tap.metadata(&metadata)?,
             (Item::Attachment(attachment), Some(tap)) => tap.attachment(attachment)?,
-            (Item::Header(..) | Item::Metadata(_) | Item::Attachment(_), None) => {}
+            (Item::Header(..) | Item::Metadata(_) | Item::Attachment(_), None) | (Item::Nothing, _) => {}
         }
         Ok(())
     }
