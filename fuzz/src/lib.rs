@@ -3,6 +3,7 @@
 //! Each `check` panics where something does not hold. They are plain functions, so that a finding can be replayed in a debugger.
 
 pub mod csv;
+pub mod echoes;
 pub mod fuser;
 pub mod layouts;
 pub mod mcap;
@@ -11,3 +12,4 @@ pub mod pieces;
 pub mod poses;
 pub mod rig;
 pub mod text;
+pub mod world;

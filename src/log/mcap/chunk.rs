@@ -157,6 +157,7 @@ impl Records {
     /// The end of a chunk, come to or not: checks it, and goes on behind it.
     fn chunk_end(&mut self, mut chunk: Chunk, fault: Option<String>) -> io::Result<Stage> {
         let found = chunk.window.take_checksum().unwrap_or_default();
+        let fault = fault.or_else(|| rest_of(&mut chunk.window));
         let is_cut = fault.is_some() && chunk.window.origin().is_cut();
         let (mut window, left) = chunk.window.into_origin().into_file();
         if is_cut {
@@ -183,5 +184,16 @@ impl Records {
     fn cut_chunk(&mut self, window: Window<Recording>, byte: u64) -> Stage {
         let saved = self.arena.entries.iter().filter(|entry| matches!(entry.what, Kept::Record(op::MESSAGE))).count();
         self.cut(window, byte, &format!("a chunk of which {saved} messages could be read"))
+    }
+}
+
+/// What is wrong with a chunk behind its last record. A decompressor may have looked at it already or not, which depends on how
+/// much of the file was read at a time: the outcome must not.
+fn rest_of(window: &mut Window<Body>) -> Option<String> {
+    match window.need(1).map(<[u8]>::is_empty) {
+        Ok(true) => None,
+        Ok(false) => Some("it holds more than it says".to_owned()),
+        Err(_) if window.origin().is_cut() => None,
+        Err(error) => Some(error.to_string()),
     }
 }
