@@ -83,22 +83,6 @@ fn any_byte_of_a_recording_may_be_wrong() {
     }
 }
 
-#[test]
-fn what_is_wrong_behind_the_last_record_of_a_chunk_is_found_however_it_comes() {
-    let recording = small();
-    for compression in [Compression::Lz4, Compression::Zstd] {
-        let mut bytes = recording.laid_out(Layout::Chunks(Some(compression)));
-        let chunk = bytes.windows(9).position(|head| head[0] == 6 && head[3..9] == [0; 6]).expect("a chunk");
-        let length = u64::from_le_bytes(bytes[chunk + 1..chunk + 9].try_into().expect("eight bytes")) as usize;
-        // No checksum of the format, so that only the compression's own can tell.
-        bytes[chunk + 9 + 24..chunk + 9 + 28].fill(0);
-        bytes[chunk + 9 + length - 1] ^= 0x40;
-        let ran = fuse(&bytes, &[]);
-        let (status, written) = dripping(&bytes);
-        assert_eq!((status, written), (ran.status, ran.stdout.clone()), "{compression:?}: {}", ran.stderr);
-    }
-}
-
 /// A recording of a robot that drives on, with so many sensors of a topic and a frame each.
 fn crowd(count: usize) -> Recording {
     let mut recording = Recording::default();

@@ -197,3 +197,6 @@ fn rest_of(window: &mut Window<Body>) -> Option<String> {
         Err(error) => Some(error.to_string()),
     }
 }
+
+#[cfg(test)]
+mod tests;
