@@ -59,10 +59,7 @@ mod unix {
     use std::{
         fs::{self, File},
         io::{self, Read},
-        os::{
-            fd::{AsFd, OwnedFd},
-            unix::net::UnixStream,
-        },
+        os::{fd::AsFd, unix::net::UnixStream},
         sync::{
             OnceLock,
             atomic::{AtomicBool, AtomicUsize, Ordering},
@@ -101,9 +98,10 @@ mod unix {
     pub fn open(path: &str) -> Result<Input> {
         let failed = |source| Error::Io { file: path.into(), source };
         if path == "-" {
-            let (input, waits_on) = (Input::open(path)?, io::stdin().as_fd().try_clone_to_owned().map_err(failed)?);
-            let reader = Box::new(Guarded { reader: input.reader, waits_on, woken: watch().map_err(failed)? });
-            return Ok(Input { reader, ..input });
+            // Not `Stdin`, which buffers: nobody could tell whether to wait.
+            let standard = File::from(io::stdin().as_fd().try_clone_to_owned().map_err(failed)?);
+            let reader = Box::new(Guarded { reader: standard, woken: watch().map_err(failed)? });
+            return Ok(Input { reader, ..Input::open(path)? });
         }
         if fs::metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_dir()) {
             watch().map_err(failed)?;
@@ -111,8 +109,7 @@ mod unix {
         }
         // A pipe is waited for here, and Ctrl-C ends that as it ends any process.
         let file = File::open(path).map_err(failed)?;
-        let waits_on = file.try_clone().map_err(failed)?.into();
-        let reader = Box::new(Guarded { reader: file, waits_on, woken: watch().map_err(failed)? });
+        let reader = Box::new(Guarded { reader: file, woken: watch().map_err(failed)? });
         Ok(Input { reader, name: path.into(), length: None })
     }
 
@@ -142,19 +139,18 @@ mod unix {
     }
 
     /// A reader whose wait a signal ends.
-    struct Guarded<R> {
-        reader: R,
-        waits_on: OwnedFd,
+    struct Guarded {
+        reader: File,
         woken: &'static UnixStream,
     }
 
-    impl<R: Read> Read for Guarded<R> {
+    impl Read for Guarded {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             loop {
                 if let Some(interrupted) = caught() {
                     return Err(interrupted.into());
                 }
-                let mut waits = [PollFd::new(&self.waits_on, PollFlags::IN), PollFd::new(self.woken, PollFlags::IN)];
+                let mut waits = [PollFd::new(&self.reader, PollFlags::IN), PollFd::new(self.woken, PollFlags::IN)];
                 match poll(&mut waits, None) {
                     // An end or an error of the input is for the read to find out.
                     Ok(_) if !waits[0].revents().is_empty() => return self.reader.read(buffer),
