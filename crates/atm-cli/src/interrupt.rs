@@ -84,7 +84,7 @@ mod unix {
     static CAUGHT: AtomicBool = AtomicBool::new(false);
     static SIGNAL: AtomicUsize = AtomicUsize::new(0);
     /// A byte comes in with each signal.
-    static WOKEN: OnceLock<UnixStream> = OnceLock::new();
+    static WOKEN: OnceLock<io::Result<UnixStream>> = OnceLock::new();
 
     /// The signal that has come, if one has.
     pub fn caught() -> Option<Interrupted> {
@@ -113,12 +113,13 @@ mod unix {
         Ok(Input { reader, name: path.into(), length: None })
     }
 
-    /// Takes the signals over, once. What the process was told to ignore (`nohup`, a script's job in the background) it
-    /// ignores on.
+    /// Takes the signals over, once.
     fn watch() -> io::Result<&'static UnixStream> {
-        if let Some(woken) = WOKEN.get() {
-            return Ok(woken);
-        }
+        WOKEN.get_or_init(take_over).as_ref().map_err(|error| error.kind().into())
+    }
+
+    /// What the process was told to ignore (`nohup`, a script's job in the background) it ignores on.
+    fn take_over() -> io::Result<UnixStream> {
         let (woken, wake) = UnixStream::pair()?;
         let ignored = ignored();
         for signal in SIGNALS.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0) {
@@ -128,7 +129,7 @@ mod unix {
             flag::register_usize(signal, &SIGNAL, usize::try_from(signal).unwrap_or_default())?;
             low_level::pipe::register(signal, wake.try_clone()?)?;
         }
-        Ok(WOKEN.get_or_init(|| woken))
+        Ok(woken)
     }
 
     /// The signals that are ignored, as bits from the first; none where the system does not say.

@@ -156,11 +156,17 @@ fn a_run_that_was_told_to_ignore_ctrl_c_ignores_it() {
     assert_same(read(&out).as_bytes(), undisturbed(&log, &["--emit", "latest"]).as_bytes());
 }
 
+/// A pipe with a name.
+fn named_pipe(scratch: &Scratch, name: &str) -> String {
+    let pipe = scratch.name(name);
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    pipe
+}
+
 #[test]
 fn ctrl_c_ends_the_wait_for_a_named_pipe_too() {
     let scratch = Scratch::new();
-    let (pipe, out) = (scratch.name("log"), scratch.name("echoes.csv"));
-    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    let (pipe, out) = (named_pipe(&scratch, "log"), scratch.name("echoes.csv"));
     let running = Running::start(&["fuse", &pipe, "--rig", "nomad200", "-o", &out], Stdio::null(), Stdio::null());
     let mut input = File::options().write(true).open(&pipe).expect("the command opens it, too");
     let begun: String = sample().split_inclusive('\n').take(300).collect();
@@ -171,4 +177,46 @@ fn ctrl_c_ends_the_wait_for_a_named_pipe_too() {
     let ended = running.ends().says(&["ended by SIGINT", &partial]);
     assert_eq!(ended.status.signal(), Some(SIGINT));
     assert_same(read(&partial).as_bytes(), expected.as_bytes());
+}
+
+#[test]
+fn of_many_logs_ctrl_c_keeps_those_that_are_fused_and_begins_no_more() {
+    let scratch = Scratch::new();
+    let (whole, next) = (scratch.file("whole.csv", sample()), scratch.file("next.csv", sample()));
+    let (pipe, directory) = (named_pipe(&scratch, "pipe.csv"), scratch.name("out"));
+    let args = ["fuse", &whole, &pipe, &next, "--rig", "nomad200", "--out-dir", &directory, "-j", "1"];
+    let running = Running::start(&args, Stdio::null(), Stdio::null());
+    let mut input = File::options().write(true).open(&pipe).expect("the command opens it, too");
+    let begun: String = sample().split_inclusive('\n').take(300).collect();
+    input.write_all(begun.as_bytes()).expect("the command reads on");
+    let (partial, expected) = (format!("{directory}/pipe.csv.partial"), settled_so_far(&begun));
+    running.until(|| fs::read_to_string(&partial).unwrap_or_default() == expected);
+    running.signal("INT");
+    let ended = running.ends().says(&["ended by SIGINT: 1 of 3 logs are fused", &partial]);
+    assert_eq!(ended.status.signal(), Some(SIGINT));
+    assert_same(read(&partial).as_bytes(), expected.as_bytes());
+    assert_same(read(&format!("{directory}/whole.csv")).as_bytes(), undisturbed(&sample(), &[]).as_bytes());
+    assert_eq!(fs::read_dir(&directory).expect("the directory").count(), 2, "no more was begun");
+}
+
+#[test]
+fn one_ctrl_c_ends_all_of_many_logs_that_were_begun_at_once() {
+    let scratch = Scratch::new();
+    let pipes: Vec<String> = (0..8).map(|index| named_pipe(&scratch, &format!("{index}.csv"))).collect();
+    let directory = scratch.name("out");
+    let options = ["--rig", "nomad200", "--out-dir", &directory, "-j", "8"];
+    let args: Vec<&str> = ["fuse"].into_iter().chain(pipes.iter().map(String::as_str)).chain(options).collect();
+    let running = Running::start(&args, Stdio::null(), Stdio::null());
+    let open = |pipe| File::options().write(true).open(pipe).expect("the command opens it, too");
+    let mut inputs: Vec<File> = pipes.iter().map(open).collect();
+    let begun: String = sample().split_inclusive('\n').take(300).collect();
+    for input in &mut inputs {
+        input.write_all(begun.as_bytes()).expect("the command reads on");
+    }
+    let partials: Vec<String> = (0..8).map(|index| format!("{directory}/{index}.csv.partial")).collect();
+    let expected = settled_so_far(&begun);
+    running.until(|| partials.iter().all(|partial| fs::read_to_string(partial).unwrap_or_default() == expected));
+    running.signal("TERM");
+    let said: Vec<&str> = partials.iter().map(String::as_str).chain(["0 of 8 logs are fused"]).collect();
+    assert_eq!(running.ends().says(&said).status.signal(), Some(SIGTERM));
 }
