@@ -103,8 +103,8 @@ fn arguments_that_do_not_go_together_are_refused() {
     fleet(&["-".into()], &directory, &[]).exits(2).says(&["needs logs with names"]);
     atm(["fuse", &whole, &half, "--rig", "nomad200"]).exits(2).says(&["--out-dir"]);
     atm(["fuse", &whole, "--rig", "nomad200", "-j", "2"]).exits(2);
-    fleet(&[whole.clone()], &directory, &["-j", "0"]).exits(2);
+    fleet(std::slice::from_ref(&whole), &directory, &["-j", "0"]).exits(2);
     for more in [["-o", "x.csv"], ["--crossings", "x.csv"], ["--summary", "x.json"], ["--poses", "x.csv"]] {
-        fleet(&[whole.clone()], &directory, &more).exits(2);
+        fleet(std::slice::from_ref(&whole), &directory, &more).exits(2);
     }
 }
