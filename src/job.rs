@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use atm_core::Kind;
+use atm_core::{Consensus, Kind, Reflector};
 
 use self::{outputs::Outputs, watched::Watched};
 use crate::{
@@ -242,10 +242,21 @@ pub struct FuseJob {
     pub summary: Option<String>,
     /// Kinds of echoes to write, where not all are.
     pub keep: Option<Vec<Kind>>,
+    /// The consensus, where its echoes are wanted in place of the median's.
+    pub consensus: Option<ConsensusJob>,
     /// The messages of a recording that is written.
     pub schema: SchemaKind,
     /// Whether the log, a recording, is copied into the output, another one.
     pub passthrough: bool,
+}
+
+/// A run's second estimator.
+#[derive(Debug, Clone)]
+pub struct ConsensusJob {
+    /// In place of the estimator of the settings.
+    pub estimator: Consensus<f64>,
+    /// Kinds of echoes to write, where not all are.
+    pub keep: Option<Vec<Reflector>>,
 }
 
 /// How a run ended.
@@ -296,6 +307,9 @@ impl FuseJob {
         if self.log.poses.as_deref() == Some("-") && self.log.input == "-" {
             return refuse("standard input can't be both the log and the poses".into());
         }
+        if self.consensus.is_some() && self.crossings.is_some() {
+            return refuse("--crossings: the estimator consensus has none".into());
+        }
         if self.passthrough && (self.output.is_none() || self.format() != Format::Mcap) {
             let output = self.output.as_deref().unwrap_or("no output");
             return refuse(format!("--passthrough: {output} is no recording that the log could be copied into"));
@@ -335,7 +349,12 @@ impl FuseJob {
         let counts = self.summary.as_deref().map(Output::create).transpose()?;
         let (source, track) = log.source();
         let mut watched = Watched::new(source, length, progress);
-        let fused = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
+        let fused = match &self.consensus {
+            None => pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {}),
+            Some(ConsensusJob { estimator, .. }) => {
+                pipeline::fuse_consensus(*estimator, &mut watched, track, &sensors, settings, &mut outputs, &mut |_| {})
+            }
+        };
         let (summary, result) = fused;
         let result = result.and_then(|()| watched.finish());
         let (pose_source, mut notes) = match &log {

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use atm_core::{
-    ArcCrossing, Arrival, Bounds, Echo, Fuser, Meaning, Reading, Rejected, Sink, Storage, TransversalMedian,
+    ArcCrossing, Arrival, Bounds, Consensus, ConsensusEcho, Echo, Estimator, Fuser, Meaning, Reading, Rejected, Sink,
+    Storage, TransversalMedian,
 };
 
 pub use crate::intake::{AnyTrack, Defaults, SensorModel, min_angle_for, readings};
@@ -36,7 +37,7 @@ pub struct Settings {
     pub history: usize,
     /// More bounds on the local map.
     pub bounds: Bounds<f64>,
-    /// θmin and the options of Sec. III-B.
+    /// θmin and the options of Sec. III-B, for [`fuse`].
     pub estimator: TransversalMedian<f64>,
     /// Whether the first unusable record ends the run.
     pub strict: bool,
@@ -61,6 +62,14 @@ pub trait EchoSink {
 
     /// An echo. Returns whether it was written.
     fn echo(&mut self, echo: &Echo<f64>) -> Result<bool>;
+
+    /// An echo of the consensus. Returns whether it was written.
+    ///
+    /// # Errors
+    /// Where it is not provided, it refuses: the sink takes the echoes of the median alone.
+    fn consensus(&mut self, _echo: &ConsensusEcho<f64>) -> Result<bool> {
+        Err(Error::Settings { message: "this output takes the echoes of the estimator atm alone".into() })
+    }
 
     /// Whether [`EchoSink::crossings`] is to be called.
     fn wants_crossings(&self) -> bool {
@@ -87,8 +96,36 @@ pub fn fuse(
     sink: &mut dyn EchoSink,
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>) {
+    fuse_by(settings.estimator, source, track, sensors, settings, sink, progress)
+}
+
+/// The same by the consensus, in place of the estimator of the settings.
+pub fn fuse_consensus(
+    consensus: Consensus<f64>,
+    source: &mut dyn Source,
+    track: Option<&mut AnyTrack>,
+    sensors: &[SensorModel],
+    settings: &Settings,
+    sink: &mut dyn EchoSink,
+    progress: &mut dyn FnMut(u64),
+) -> (Summary, Result<()>) {
+    fuse_by(consensus, source, track, sensors, settings, sink, progress)
+}
+
+fn fuse_by<E: Estimator<f64>>(
+    estimator: E,
+    source: &mut dyn Source,
+    track: Option<&mut AnyTrack>,
+    sensors: &[SensorModel],
+    settings: &Settings,
+    sink: &mut dyn EchoSink,
+    progress: &mut dyn FnMut(u64),
+) -> (Summary, Result<()>)
+where
+    E::Echo: Report,
+{
     let mut summary = Summary::default();
-    let (estimator, bounds, history) = (settings.estimator, settings.bounds, settings.history);
+    let (bounds, history) = (settings.bounds, settings.history);
     // Sensors that become known on the way are added then.
     let count = sensors.len().max(1);
     let result = match settings.emit {
@@ -109,8 +146,8 @@ fn too_large(error: StorageError) -> Error {
 }
 
 /// The consumer that fuses.
-struct Fusing<'a, const B: usize> {
-    fuser: Fuser<f64, Slots<f64, B>>,
+struct Fusing<'a, E, const B: usize> {
+    fuser: Fuser<f64, Slots<f64, B>, E>,
     /// Sensors that the fuser has room for.
     room: usize,
     sink: &'a mut dyn EchoSink,
@@ -118,11 +155,12 @@ struct Fusing<'a, const B: usize> {
     crossings: Vec<ArcCrossing<f64>>,
 }
 
-impl<'a, const B: usize> Fusing<'a, B>
+impl<'a, E: Estimator<f64>, const B: usize> Fusing<'a, E, B>
 where
     Slots<f64, B>: Storage<f64>,
+    E::Echo: Report,
 {
-    fn new(fuser: Fuser<f64, Slots<f64, B>>, room: usize, sink: &'a mut dyn EchoSink) -> Self {
+    fn new(fuser: Fuser<f64, Slots<f64, B>, E>, room: usize, sink: &'a mut dyn EchoSink) -> Self {
         let wants_crossings = sink.wants_crossings();
         Self { fuser, room, sink, wants_crossings, crossings: Vec::new() }
     }
@@ -150,7 +188,7 @@ where
     fn reporting<R>(
         &mut self,
         summary: &mut Summary,
-        work: impl FnOnce(&mut Fuser<f64, Slots<f64, B>>, &mut Reports<'_>) -> R,
+        work: impl FnOnce(&mut Fuser<f64, Slots<f64, B>, E>, &mut Reports<'_>) -> R,
     ) -> Result<R> {
         let mut reports = Reports {
             sink: &mut *self.sink,
@@ -169,9 +207,10 @@ where
     }
 }
 
-impl<const B: usize> Consumer for Fusing<'_, B>
+impl<E: Estimator<f64>, const B: usize> Consumer for Fusing<'_, E, B>
 where
     Slots<f64, B>: Storage<f64>,
+    E::Echo: Report,
 {
     fn sensors(&mut self, ids: &[Arc<str>]) -> Result<()> {
         if ids.len() > self.room {
@@ -192,6 +231,10 @@ where
             Ok(Arrival::Entered) => {
                 summary.readings += 1;
                 summary.no_echo += u64::from(reading.range.meaning() != Meaning::Echo);
+                self.sink.reading(reading)?;
+            }
+            Ok(Arrival::Replaced) => {
+                summary.skipped.held += 1;
                 self.sink.reading(reading)?;
             }
             Ok(Arrival::Held) => summary.skipped.held += 1,
@@ -247,14 +290,41 @@ impl Reports<'_> {
     }
 }
 
-impl Sink<f64, Echo<f64>> for Reports<'_> {
-    fn echo(&mut self, echo: &Echo<f64>) {
+/// An echo of some estimator, as it is counted and handed on.
+trait Report {
+    fn count(&self, summary: &mut Summary);
+
+    fn hand_on(&self, sink: &mut dyn EchoSink) -> Result<bool>;
+}
+
+impl Report for Echo<f64> {
+    fn count(&self, summary: &mut Summary) {
+        summary.echoes.add(self.kind);
+    }
+
+    fn hand_on(&self, sink: &mut dyn EchoSink) -> Result<bool> {
+        sink.echo(self)
+    }
+}
+
+impl Report for ConsensusEcho<f64> {
+    fn count(&self, summary: &mut Summary) {
+        summary.echoes.add_reflector(self.kind);
+    }
+
+    fn hand_on(&self, sink: &mut dyn EchoSink) -> Result<bool> {
+        sink.consensus(self)
+    }
+}
+
+impl<E: Report> Sink<f64, E> for Reports<'_> {
+    fn echo(&mut self, echo: &E) {
         self.hand_on_crossings();
-        self.summary.echoes.add(echo.kind);
+        echo.count(self.summary);
         if self.failed.is_some() {
             return;
         }
-        match self.sink.echo(echo) {
+        match echo.hand_on(self.sink) {
             Ok(written) => self.summary.written += u64::from(written),
             Err(error) => self.failed = Some(error),
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use atm_core::Kind;
+use atm_core::{Kind, Reflector};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use crate::error::{Problem, Reason};
@@ -45,21 +45,40 @@ pub struct Skipped {
     pub empty: u64,
 }
 
-/// A count for each kind of echo.
+/// A count for each kind of echo, of the estimator that made them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Counts([u64; Kind::ALL.len()]);
+pub struct Counts {
+    kinds: [u64; Kind::ALL.len()],
+    /// Those of the consensus; `None` where there was none.
+    reflectors: Option<[u64; Reflector::ALL.len()]>,
+}
 
 impl Counts {
     /// Counts one.
     pub fn add(&mut self, kind: Kind) {
-        for (count, listed) in self.0.iter_mut().zip(Kind::ALL) {
+        for (count, listed) in self.kinds.iter_mut().zip(Kind::ALL) {
             *count += u64::from(listed == kind);
         }
     }
 
-    /// Each kind with its count.
+    /// Counts one of the consensus.
+    pub fn add_reflector(&mut self, reflector: Reflector) {
+        let counts = self.reflectors.get_or_insert_default();
+        for (count, listed) in counts.iter_mut().zip(Reflector::ALL) {
+            *count += u64::from(listed == reflector);
+        }
+    }
+
+    /// The word for each kind with its count: of the consensus where it made echoes, else of the median.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        let reflectors = self.reflectors.map(|counts| Reflector::ALL.map(Reflector::name).into_iter().zip(counts));
+        let kinds = self.reflectors.is_none().then(|| self.iter().map(|(kind, count)| (kind.name(), count)));
+        reflectors.into_iter().flatten().chain(kinds.into_iter().flatten())
+    }
+
+    /// Each kind of the median with its count.
     pub fn iter(&self) -> impl Iterator<Item = (Kind, u64)> {
-        Kind::ALL.into_iter().zip(self.0)
+        Kind::ALL.into_iter().zip(self.kinds)
     }
 
     /// The count of one kind.
@@ -69,7 +88,7 @@ impl Counts {
 
     /// All together.
     pub fn total(&self) -> u64 {
-        self.0.iter().sum()
+        self.named().map(|(_, count)| count).sum()
     }
 }
 
@@ -120,7 +139,7 @@ impl Summary {
 }
 
 fn by_kind<S: Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(counts.iter().map(|(kind, count)| (kind.name(), count)))
+    serializer.collect_map(counts.named())
 }
 
 fn by_reason<S: Serializer>(dropped: &Dropped, serializer: S) -> Result<S::Ok, S::Error> {

@@ -1,6 +1,6 @@
 //! Long and wide tables of readings: the same rows, problems and errors whole and in pieces; echoes from whatever can be used.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, atomic::Ordering};
 
 use atm::{
     core::{Bounds, Echo, TransversalMedian},
@@ -58,7 +58,7 @@ fn open<N: SensorNames>(options: u8, input: Input, format: &TableFormat, names: 
 fn agree<N: SensorNames + Clone>(options: u8, pattern: u8, file: &[u8], format: &TableFormat, names: N) {
     let at_once = read(open(options, whole(file), format, names.clone()), || 0);
     let (input, reads) = pieces(file, pattern);
-    let in_pieces = read(open(options, input, format, names), || reads.get());
+    let in_pieces = read(open(options, input, format, names), || reads.load(Ordering::Relaxed));
     assert_eq!(at_once, in_pieces);
 }
 

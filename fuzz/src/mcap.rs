@@ -1,6 +1,6 @@
 //! Recordings: the same rows, problems and words whole and in pieces; what can be used is fused.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, atomic::Ordering};
 
 use atm::{
     core::{Bounds, Echo, TransversalMedian},
@@ -75,7 +75,7 @@ fn open(options: u8, input: Input) -> Result<McapReadings> {
 fn agree(options: u8, pattern: u8, file: &[u8]) {
     let at_once = read(open(options, whole(file)), file.len(), || 0);
     let (input, reads) = pieces(file, pattern);
-    let in_pieces = read(open(options, input), file.len(), || reads.get());
+    let in_pieces = read(open(options, input), file.len(), || reads.load(Ordering::Relaxed));
     assert_eq!(at_once, in_pieces);
 }
 

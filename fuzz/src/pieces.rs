@@ -1,6 +1,12 @@
 //! Input that comes whole, and the same input that comes in pieces.
 
-use std::{cell::Cell, io, rc::Rc, sync::Arc};
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
 
 use atm::log::Input;
 
@@ -9,12 +15,12 @@ struct Pieces {
     bytes: Arc<[u8]>,
     at: usize,
     pattern: u8,
-    reads: Rc<Cell<u64>>,
+    reads: Arc<AtomicU64>,
 }
 
 impl io::Read for Pieces {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.reads.set(self.reads.get() + 1);
+        self.reads.fetch_add(1, Ordering::Relaxed);
         let rest = &self.bytes[self.at..];
         // The lowest bits are the length, the others change it from read to read.
         let most = usize::from(self.pattern & 7) + 1;
@@ -32,8 +38,8 @@ pub fn whole(bytes: &[u8]) -> Input {
 }
 
 /// In pieces of one to eight bytes; the second value counts the reads.
-pub fn pieces(bytes: &[u8], pattern: u8) -> (Input, Rc<Cell<u64>>) {
-    let reads = Rc::new(Cell::new(0));
-    let reader = Pieces { bytes: bytes.into(), at: 0, pattern, reads: Rc::clone(&reads) };
+pub fn pieces(bytes: &[u8], pattern: u8) -> (Input, Arc<AtomicU64>) {
+    let reads = Arc::new(AtomicU64::new(0));
+    let reader = Pieces { bytes: bytes.into(), at: 0, pattern, reads: Arc::clone(&reads) };
     (Input { reader: Box::new(reader), name: "whole".into(), length: None }, reads)
 }

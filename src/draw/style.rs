@@ -18,6 +18,8 @@ text,.t{font:13px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:#444}\
 .robot{fill:#e8e8e8;stroke:#555}.arrow{stroke:#333;stroke-width:2}.ring{stroke:#111;stroke-width:1.6}\
 .free1{fill:#d55e00;fill-opacity:.2}.free2{fill:#0072b2;fill-opacity:.17}.truth{stroke:#111;stroke-width:1.2}\
 .crossings{fill:#56b4e9;fill-opacity:.75}.center{fill:#d55e00;stroke:#fff;stroke-width:1;paint-order:stroke}\
+.point{fill:#0072b2;stroke:#fff;stroke-width:1.2;paint-order:stroke}\
+.wall{fill:#009e73;stroke:#fff;stroke-width:1.2;paint-order:stroke}\
 .near{fill:#009e73;stroke:#fff;stroke-width:1.2;paint-order:stroke}\
 .pair{fill:#cc79a7;stroke:#fff;stroke-width:1.2;paint-order:stroke}.single{stroke:#111;stroke-width:1.5}\
 .median{fill:#0072b2;stroke:#fff;stroke-width:1.6;paint-order:stroke}\
@@ -84,7 +86,7 @@ pub(super) struct MarkStyle {
 }
 
 /// Names of marks that come with a look of their own: name, class, shape, rank, words.
-const NAMED: [(&str, &str, Mark, u8, &str); 8] = [
+const NAMED: [(&str, &str, Mark, u8, &str); 10] = [
     ("truth", "truth", Mark::Tick, 0, "true echo points"),
     ("crossings", "crossings", Mark::Speck, 1, "crossings"),
     ("centerline", "center", Mark::SmallDisc, 3, "centre of the cone"),
@@ -93,6 +95,8 @@ const NAMED: [(&str, &str, Mark, u8, &str); 8] = [
     ("pair", "pair", Mark::Triangle, 6, "pair"),
     ("single", "single", Mark::Plus, 7, "single"),
     ("median", "median", Mark::Disc, 8, "median"),
+    ("wall", "wall", Mark::Diamond, 9, "wall"),
+    ("point", "point", Mark::Disc, 10, "point"),
 ];
 /// The rank of all other marks.
 const RANK: u8 = 2;

@@ -2,7 +2,7 @@
 
 use std::{io, sync::Arc};
 
-use atm_core::{ArcCrossing, Echo, Isometry2, Kind, Reading};
+use atm_core::{ArcCrossing, ConsensusEcho, Echo, Isometry2, Kind, Reading, Reflector};
 
 use super::FuseJob;
 use crate::{
@@ -25,6 +25,7 @@ use crate::{
 /// One output.
 enum Written {
     Echoes(Table<Echo<f64>>),
+    Consensus(Table<ConsensusEcho<f64>>),
     Crossings(Table<ArcCrossing<f64>>),
     Recording(Box<McapSink<Output>>),
 }
@@ -33,6 +34,7 @@ impl Written {
     fn flush(&mut self) -> Result<()> {
         match self {
             Self::Echoes(table) => table.with(Behind::flush),
+            Self::Consensus(table) => table.with(Behind::flush),
             Self::Crossings(table) => table.with(Behind::flush),
             Self::Recording(recording) => recording.flush(),
         }
@@ -42,6 +44,7 @@ impl Written {
     fn commit(self) -> Result<()> {
         match self {
             Self::Echoes(table) => table.commit(),
+            Self::Consensus(table) => table.commit(),
             Self::Crossings(table) => table.commit(),
             Self::Recording(recording) => recording.finish()?.commit(),
         }
@@ -87,6 +90,8 @@ pub(super) struct Outputs {
     crossings: Option<Written>,
     /// Kinds to write, where not all are.
     keep: Option<Vec<Kind>>,
+    /// Kinds of the consensus to write, where not all are.
+    keep_reflectors: Option<Vec<Reflector>>,
     partials: Vec<String>,
     mounts: Vec<Isometry2<f64>>,
     /// The log is copied.
@@ -107,6 +112,7 @@ impl Outputs {
                     kind: job.schema,
                     layout: layout(settings.emit, &output),
                     contents,
+                    consensus: job.consensus.is_some(),
                     frames: Frames { mounts: input.mounts.clone(), ..Frames::default() },
                     history: settings.history,
                     pass_window: input.window.filter(|_| job.passes(contents)),
@@ -115,6 +121,9 @@ impl Outputs {
             }
             let ids = input.ids.iter().map(|id| &**id);
             match contents {
+                Contents::Everything if job.consensus.is_some() => {
+                    Table::new(file, TableWriter::consensus(output, ids)).map(Written::Consensus)
+                }
                 Contents::Everything => Table::new(file, TableWriter::echoes(output, ids)).map(Written::Echoes),
                 Contents::Crossings => Table::new(file, TableWriter::crossings(output, ids)).map(Written::Crossings),
             }
@@ -126,6 +135,7 @@ impl Outputs {
             crossings: crossings.transpose()?,
             echoes,
             keep: job.keep.clone(),
+            keep_reflectors: job.consensus.as_ref().and_then(|consensus| consensus.keep.clone()),
             partials,
             mounts: input.mounts.clone(),
             passes: job.passthrough,
@@ -199,6 +209,7 @@ impl EchoSink for Outputs {
     fn sensors(&mut self, ids: &[Arc<str>]) -> Result<()> {
         self.all().try_for_each(|written| match written {
             Written::Echoes(table) => table.with(|rows| rows.set_ids(ids)),
+            Written::Consensus(table) => table.with(|rows| rows.set_ids(ids)),
             Written::Crossings(table) => table.with(|rows| rows.set_ids(ids)),
             Written::Recording(recording) => recording.sensors(ids),
         })
@@ -222,6 +233,17 @@ impl EchoSink for Outputs {
         match &mut self.echoes {
             Some(Written::Echoes(table)) => table.with(|rows| rows.push(*echo)).map(|()| true),
             Some(Written::Recording(recording)) => recording.echo(echo),
+            _ => Ok(false),
+        }
+    }
+
+    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
+        if self.keep_reflectors.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
+            return Ok(false);
+        }
+        match &mut self.echoes {
+            Some(Written::Consensus(table)) => table.with(|rows| rows.push(*echo)).map(|()| true),
+            Some(Written::Recording(recording)) => recording.consensus(echo),
             _ => Ok(false),
         }
     }

@@ -2,12 +2,19 @@
 
 use std::io::{self, Write};
 
-use atm_core::{ArcCrossing, Echo};
+use atm_core::{ArcCrossing, ConsensusEcho, Echo};
 
 use crate::stamp;
 
 /// The columns of an echo table, in order.
 pub const ECHO_COLUMNS: &str = "t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance";
+
+/// The columns of a table of the consensus's echoes, in order: the usual ones first.
+///
+/// In them `crossings` counts the readings that agree, as `support` does, `resolution` is the length that holds the echo
+/// with 95 %, and `significance` is what is missing of full confidence. The normal's columns are empty but for walls.
+pub const CONSENSUS_COLUMNS: &str = "t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance,support,against,\
+                                     sigma_azimuth,sigma_range,normal_x,normal_y";
 
 /// The columns of a table of crossings, in order.
 pub const CROSSING_COLUMNS: &str = "t,sensor,t_other,sensor_other,x,y,azimuth,angle";
@@ -21,6 +28,12 @@ pub trait Line {
 impl Line for Echo<f64> {
     fn write<W: Write>(&self, table: &mut TableWriter<W>) -> io::Result<()> {
         table.echo(self)
+    }
+}
+
+impl Line for ConsensusEcho<f64> {
+    fn write<W: Write>(&self, table: &mut TableWriter<W>) -> io::Result<()> {
+        table.consensus_echo(self)
     }
 }
 
@@ -70,6 +83,11 @@ impl<W: Write> TableWriter<W> {
         Self::new(out, ids, ECHO_COLUMNS)
     }
 
+    /// A table of the consensus's echoes of the sensors `ids`, its header written.
+    pub fn consensus<'a>(out: W, ids: impl IntoIterator<Item = &'a str>) -> io::Result<Self> {
+        Self::new(out, ids, CONSENSUS_COLUMNS)
+    }
+
     /// A table of crossings between arcs of the sensors `ids`, its header written.
     pub fn crossings<'a>(out: W, ids: impl IntoIterator<Item = &'a str>) -> io::Result<Self> {
         Self::new(out, ids, CROSSING_COLUMNS)
@@ -100,6 +118,34 @@ impl<W: Write> TableWriter<W> {
         self.count(echo.crossings);
         self.frequent(echo.resolution);
         self.frequent(echo.significance());
+        self.end()
+    }
+
+    /// Writes one echo of the consensus.
+    pub fn consensus_echo(&mut self, echo: &ConsensusEcho<f64>) -> io::Result<()> {
+        self.row.clear();
+        stamp::write(echo.t, &mut self.row);
+        self.id(echo.sensor);
+        self.float(echo.position.x);
+        self.float(echo.position.y);
+        self.row.push(b',');
+        self.row.extend_from_slice(echo.kind.name().as_bytes());
+        self.frequent(echo.range);
+        self.float(echo.azimuth());
+        self.count(echo.support);
+        self.float(echo.resolution);
+        self.float(echo.significance());
+        self.count(echo.support);
+        self.count(echo.against);
+        self.float(echo.sigma_azimuth);
+        self.float(echo.sigma_range);
+        match echo.normal {
+            Some(normal) => {
+                self.float(normal.x);
+                self.float(normal.y);
+            }
+            None => self.row.extend_from_slice(b",,"),
+        }
         self.end()
     }
 

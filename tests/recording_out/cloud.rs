@@ -8,6 +8,8 @@ use crate::{cdr::Cdr, proto::Proto, sample::Logged};
 pub struct Cloud {
     pub t: i64,
     pub frame: String,
+    /// Name, offset and size of each field.
+    pub fields: Vec<(String, usize, usize)>,
     /// Each point's fields. All types fit `f64`, and no value here is beyond its whole numbers.
     pub points: Vec<BTreeMap<String, f64>>,
 }
@@ -22,6 +24,12 @@ fn number(bytes: &[u8], datatype: u64) -> f64 {
         8 => f64::from_le_bytes(bytes[..8].try_into().unwrap()),
         other => panic!("type {other}"),
     }
+}
+
+/// Names, offsets, and sizes by the types of sensor_msgs/PointField.
+fn sized(fields: &[(String, usize, u64)]) -> Vec<(String, usize, usize)> {
+    let size = |datatype| [0, 1, 1, 2, 2, 4, 4, 4, 8][datatype as usize];
+    fields.iter().map(|(name, offset, datatype)| (name.clone(), *offset, size(*datatype))).collect()
 }
 
 /// From foxglove.PackedElementField's numbers of types to sensor_msgs/PointField's.
@@ -60,7 +68,7 @@ impl Cloud {
             |field: Proto<'_>| (field.text(1).to_owned(), field.integer(2) as usize, as_point_field(field.integer(3)));
         let fields: Vec<_> = cloud.messages(5).map(field).collect();
         let points = points(cloud.bytes(6), cloud.integer(4) as usize, &fields);
-        Self { t: cloud.stamp(1), frame: cloud.text(2).to_owned(), points }
+        Self { t: cloud.stamp(1), frame: cloud.text(2).to_owned(), fields: sized(&fields), points }
     }
 
     fn ros(data: &[u8]) -> Self {
@@ -83,6 +91,6 @@ impl Cloud {
         assert_eq!(points.len(), width as usize);
         assert_eq!(cloud.u8(), 1, "every point is one");
         cloud.end();
-        Self { t, frame: frame.to_owned(), points }
+        Self { t, frame: frame.to_owned(), fields: sized(&fields), points }
     }
 }

@@ -2,6 +2,7 @@
 
 mod cdr;
 mod cloud;
+mod consensus;
 mod content;
 mod file;
 mod passing;

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fs, sync::Arc};
 
 use atm::{
-    core::{ArcCrossing, Bounds, Echo, Isometry2, Reading, TransversalMedian},
+    core::{ArcCrossing, Bounds, Consensus, Echo, Isometry2, MinAngle, Reading, TransversalMedian},
     error::Result,
     log::{
         Input, Row,
@@ -29,6 +29,15 @@ pub fn nomad() -> Rig {
 
 /// Fuses a long table of the Nomad's ring into a sink.
 pub fn fuse(table: &str, emit: Emit, sink: &mut dyn EchoSink) -> Result<()> {
+    fuse_by(None, table, emit, sink)
+}
+
+/// The same by the consensus.
+pub fn fuse_consensus(table: &str, sink: &mut dyn EchoSink) -> Result<()> {
+    fuse_by(Some(Consensus::new(MinAngle::PAPER)), table, Emit::Settled, sink)
+}
+
+fn fuse_by(consensus: Option<Consensus<f64>>, table: &str, emit: Emit, sink: &mut dyn EchoSink) -> Result<()> {
     let rig = Arc::new(nomad());
     let sensors = Defaults::default().complete(&rig).expect("the built-in rig is complete");
     let input = Input { reader: Box::new(std::io::Cursor::new(table.to_owned())), name: "log".into(), length: None };
@@ -36,7 +45,10 @@ pub fn fuse(table: &str, emit: Emit, sink: &mut dyn EchoSink) -> Result<()> {
     let bounds = Bounds::NONE;
     let settings = Settings { emit, history: 10, bounds, estimator: TransversalMedian::PAPER, strict: true };
     sink.sensors(nomad().ids())?;
-    pipeline::fuse(&mut source, None, &sensors, &settings, sink, &mut |_| {}).1
+    match consensus {
+        None => pipeline::fuse(&mut source, None, &sensors, &settings, sink, &mut |_| {}).1,
+        Some(it) => pipeline::fuse_consensus(it, &mut source, None, &sensors, &settings, sink, &mut |_| {}).1,
+    }
 }
 
 /// Options for the Nomad's ring.

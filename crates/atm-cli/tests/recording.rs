@@ -90,3 +90,38 @@ fn info_says_what_it_is_and_that_values_are_held() {
     assert_eq!(found["sensors"]["0"]["readings"], 413);
     assert!(found["problems"].to_string().contains("--drop-held"), "{found}");
 }
+
+#[test]
+fn consensus_has_jambs_as_points_and_the_corridor_as_walls() {
+    let more = ["--held", "edges", "--estimator", "consensus", "--range-error", "2cm", "--keep", "point,wall"];
+    let (Some((consensus, summary)), Some((atm, _))) = (fuse(&more), fuse(&["--drop-held", "--keep", "median,single"]))
+    else {
+        return;
+    };
+    assert!(tally(&summary, "/skipped/held") > 1000);
+    let jambs = atm.exits(0).echoes();
+    let consensus = consensus.exits(0);
+    let rows: Vec<Vec<&str>> = consensus.text().lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let of_kind = |kind| rows.iter().filter(move |row| row[4] == kind);
+    // There is no truth; where the medians and singles stand, many arcs cross.
+    let points: Vec<f64> = of_kind("point")
+        .map(|row| {
+            let (x, y) = (number(row[2]), number(row[3]));
+            jambs.iter().map(|jamb| (jamb.x - x).hypot(jamb.y - y)).fold(f64::INFINITY, f64::min)
+        })
+        .collect();
+    assert!(points.len() > 40 && points.iter().all(|&distance| distance < 0.25), "{points:?}");
+    // The first corridor runs along x, some 2.1 m wide, from the origin to where the robot turns.
+    let walls: Vec<(f64, f64)> = of_kind("wall")
+        .filter(|row| number(row[2]) < 10.0)
+        .map(|row| (number(row[14]).atan2(number(row[15]).abs()).to_degrees().abs(), number(row[3])))
+        .collect();
+    let along = walls.iter().filter(|(tilt, _)| *tilt < 5.0).count();
+    let in_place = walls.iter().filter(|(_, y)| (1.1..1.3).contains(y) || (-1.0..-0.8).contains(y)).count();
+    assert!(walls.len() > 100, "{}", walls.len());
+    assert!(
+        along * 10 >= walls.len() * 9 && in_place * 10 >= walls.len() * 9,
+        "{along}, {in_place} of {}",
+        walls.len()
+    );
+}

@@ -28,6 +28,10 @@ pub enum DomainError {
     Speed,
     /// A rate must be positive and finite.
     Rate,
+    /// A least confidence must lie in \[0, 1).
+    Confidence,
+    /// A range's error must be finite and not negative.
+    RangeError,
 }
 
 impl fmt::Display for DomainError {
@@ -45,6 +49,8 @@ impl fmt::Display for DomainError {
             Self::MinStep => "the smallest step must be positive and finite",
             Self::Speed => "the speed must be positive and finite",
             Self::Rate => "the rate must be positive and finite",
+            Self::Confidence => "the least confidence must lie in [0, 1)",
+            Self::RangeError => "the error of a range must be finite and not negative",
         })
     }
 }

@@ -6,11 +6,11 @@ use crate::{
     arc::{Arc, Bearing},
     error::Rejected,
     estimator::{Estimator, ReportedArc, TransversalMedian, Verdict},
-    local_map::{Bounds, LocalMap, Newcomer},
+    local_map::{Bounds, Held, LocalMap, Newcomer},
     partners::{Partners, Scope},
     pose::{Odometer, usable},
     scalar::Scalar,
-    sensor::{Beam, Range, RangeResolution},
+    sensor::{Beam, Meaning, Range, RangeResolution},
     storage::{Entry, SettledStorage, SnapshotStorage, Storage},
 };
 
@@ -41,7 +41,9 @@ pub struct Reading<T: Scalar> {
 pub enum Arrival {
     /// It is in the local map now.
     Entered,
-    /// Skipped: equal to its sensor's previous reading ([`Bounds::with_held_dropped`]).
+    /// It is in the local map now, in place of its sensor's previous reading, to which it is equal ([`Held::Edges`]).
+    Replaced,
+    /// Skipped: equal to its sensor's previous reading ([`Held::Drop`]).
     Held,
     /// Skipped: its sensor has moved too little ([`Bounds::with_min_step`]).
     Still,
@@ -135,9 +137,11 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         self.check(reading)?;
         self.latest = Some(reading.t);
         let travel = self.odometer.advance(reading.robot);
-        if let Some(skipped) = self.skip(reading) {
+        let held = self.is_held(reading);
+        if let Some(skipped) = self.skip(reading, held) {
             return Ok(skipped);
         }
+        let replaces = held && self.bounds.held == Held::Edges && self.map.take_back_held(reading.sensor);
         // The leavers leave first, then the newcomer meets all that remain, then it enters.
         let newcomer = Newcomer { sensor: reading.sensor, t: reading.t, travel };
         while let Some(slot) = self.map.next_leaver(&newcomer, &self.bounds) {
@@ -149,6 +153,8 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
             Entry {
                 sensor_position: Point2::from(reading.pose.translation.vector),
                 arc,
+                beyond: (reading.range.meaning() == Meaning::Beyond)
+                    .then(|| Vector2::new(reading.pose.rotation.re, reading.pose.rotation.im)),
                 t: reading.t,
                 travel,
                 arrival: 0,
@@ -156,6 +162,9 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
                 range_resolution: reading.range_resolution,
             },
         );
+        if replaces {
+            return Ok(Arrival::Replaced);
+        }
         if let (false, Some(arc)) = (self.settled, arc) {
             let reported = ReportedArc {
                 arc,
@@ -208,17 +217,22 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         Ok(())
     }
 
-    /// Whether the reading takes no slot, and why.
-    fn skip(&mut self, reading: &Reading<T>) -> Option<Arrival> {
-        let columns = self.map.storage.columns();
-        let depth = columns.depth;
-        let ring = columns.rings.get_mut(usize::from(reading.sensor))?;
+    /// Whether the reading is equal to its sensor's previous one, which it replaces as such.
+    fn is_held(&mut self, reading: &Reading<T>) -> bool {
+        let ring = self.map.storage.columns().rings.get_mut(usize::from(reading.sensor));
         let range = reading.range.echo().unwrap_or(T::NAN);
         // Total order: all readings without echo are the same NaN, and equal.
-        let held = ring.last.replace(range).is_some_and(|last| last.order(&range).is_eq());
-        if held && self.bounds.drop_held {
+        ring.is_some_and(|ring| ring.last.replace(range).is_some_and(|last| last.order(&range).is_eq()))
+    }
+
+    /// Whether the reading takes no slot, and why.
+    fn skip(&mut self, reading: &Reading<T>, held: bool) -> Option<Arrival> {
+        if held && self.bounds.held == Held::Drop {
             return Some(Arrival::Held);
         }
+        let columns = self.map.storage.columns();
+        let depth = columns.depth;
+        let ring = columns.rings.get(usize::from(reading.sensor))?;
         let (min_step, newest) =
             (self.bounds.min_step?, usize::from(reading.sensor) * depth + usize::from(ring.newest));
         if ring.present == 0 {
@@ -243,7 +257,7 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         let sensor = slot.checked_div(columns.depth).unwrap_or(0) as u16;
         let (arc, t) = (columns.arc(slot), columns.time(slot));
         // A reading without echo has no arc, and nothing to report.
-        if let (true, Ok(range_resolution)) = (arc.radius > T::ZERO, RangeResolution::new(resolution)) {
+        if let (true, Ok(range_resolution)) = (arc.radius < T::INFINITY, RangeResolution::new(resolution)) {
             self.report(slot, &ReportedArc { arc, t, sensor, field_of_view, range_resolution }, scope, sink);
         }
     }

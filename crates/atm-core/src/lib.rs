@@ -61,6 +61,7 @@
 extern crate std;
 
 mod arc;
+mod consensus;
 mod crossing;
 mod echo;
 mod error;
@@ -81,12 +82,13 @@ pub use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 
 pub use crate::{
     arc::{Arc, Bearing},
+    consensus::{Consensus, ConsensusEcho, Reflector},
     crossing::{Crossing, MinAngle, crossings},
     echo::{Echo, Kind},
     error::{DomainError, Rejected},
     estimator::{Estimator, OnNone, OnTwo, ReportedArc, TransversalMedian, Verdict},
     fuser::{ArcCrossing, Arrival, Fuser, Reading, Sink},
-    local_map::Bounds,
+    local_map::{Bounds, Held},
     median::median,
     partners::Partners,
     pose::{Anchor, Travel},

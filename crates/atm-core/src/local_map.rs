@@ -21,12 +21,31 @@ pub struct Bounds<T> {
     pub(crate) max_age: Option<u64>,
     pub(crate) max_travel: Option<Travel>,
     pub(crate) min_step: Option<T>,
-    pub(crate) drop_held: bool,
+    pub(crate) held: Held,
+}
+
+/// What becomes of a reading that is equal to its sensor's previous one, all without echo being equal.
+///
+/// A ring that reports faster than it fires repeats values that it holds, which are no news; along a wall the same value
+/// is news each time. Nothing in a reading tells the two apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Held {
+    /// It is a reading like any other.
+    #[default]
+    Keep,
+    /// It is skipped.
+    Drop,
+    /// Of a run of equal readings the first stays and the last before a change: each one after the second takes the place
+    /// of the one before it. Right at both ends of a wall, and wrong by one held value at most. With `latest` the ones
+    /// after the second are partners to others, and are not reported.
+    Edges,
 }
 
 impl<T: Scalar> Bounds<T> {
     /// H alone.
-    pub const NONE: Self = Self { max_age: None, max_travel: None, min_step: None, drop_held: false };
+    pub const NONE: Self = Self { max_age: None, max_travel: None, min_step: None, held: Held::Keep };
 
     /// A reading leaves at the first arrival that is more than this later, in nanoseconds.
     pub const fn with_max_age(self, nanoseconds: u64) -> Self {
@@ -52,7 +71,12 @@ impl<T: Scalar> Bounds<T> {
     /// A reading equal to its sensor's previous one is skipped, all without echo being equal: for rings that repeat a
     /// held value.
     pub const fn with_held_dropped(self, drop: bool) -> Self {
-        Self { drop_held: drop, ..self }
+        self.with_held(if drop { Held::Drop } else { Held::Keep })
+    }
+
+    /// What becomes of readings equal to their sensor's previous ones.
+    pub const fn with_held(self, held: Held) -> Self {
+        Self { held, ..self }
     }
 }
 
@@ -107,6 +131,31 @@ impl<S> LocalMap<S> {
         columns.write(slot, &Entry { arrival: self.arrivals, ..entry });
         self.arrivals = self.arrivals.wrapping_add(1);
         slot
+    }
+
+    /// Takes the newest reading of a sensor back, as if it had not arrived, if it is equal to the one before it.
+    ///
+    /// Its arrival stays in the log, where nothing answers to it any more.
+    pub(crate) fn take_back_held<T: Scalar>(&mut self, sensor: u16) -> bool
+    where
+        S: Storage<T>,
+    {
+        let mut columns = self.storage.columns();
+        let depth = columns.depth;
+        let Some(ring) = columns.rings.get_mut(usize::from(sensor)) else { return false };
+        let range = |age| {
+            let slot = usize::from(sensor) * depth + back(ring.newest, age, depth);
+            columns.radius.get(slot).copied().filter(|radius| radius.finite()).unwrap_or(T::NAN)
+        };
+        if ring.present < 2 || range(0).order(&range(1)).is_ne() {
+            return false;
+        }
+        let slot = usize::from(sensor) * depth + usize::from(ring.newest);
+        ring.newest = back(ring.newest, 1, depth) as u16;
+        ring.present -= 1;
+        ring.kept = ring.kept.saturating_sub(1);
+        columns.blank(slot);
+        true
     }
 
     /// The slot of the next reading that has to leave before `newcomer` enters; oldest first.

@@ -47,6 +47,21 @@ impl<T: Scalar> Partners<'_, T> {
         }
     }
 
+    /// Visits the slot of every reading that the arc met, with or without an echo, sensor by sensor.
+    pub(crate) fn for_each_reading(&self, mut visit: impl FnMut(usize)) {
+        let arrival = self.columns.arrived(self.slot);
+        let depth = self.columns.depth;
+        for (sensor, ring) in self.columns.rings.iter().enumerate() {
+            let count = if self.scope == Scope::Met { ring.kept } else { ring.present };
+            for age in (0..count).rev() {
+                let slot = sensor * depth + back(ring.newest, age, depth);
+                if slot != self.slot && self.meets(slot, arrival) {
+                    visit(slot);
+                }
+            }
+        }
+    }
+
     fn meets(&self, slot: usize, arrival: u32) -> bool {
         match self.scope {
             Scope::Present => true,

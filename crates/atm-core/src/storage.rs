@@ -70,7 +70,7 @@ pub struct Columns<'a, T> {
     pub depth: usize,
     /// What the pass over the columns may use.
     pub instructions: Instructions,
-    /// The middle of the arc.
+    /// The middle of the arc; where nothing is, the boresight from the sensor, tan(φ/4) long.
     pub middle_x: &'a mut [T],
     /// The middle of the arc.
     pub middle_y: &'a mut [T],
@@ -80,7 +80,7 @@ pub struct Columns<'a, T> {
     pub sensor_x: &'a mut [T],
     /// The sensor's position.
     pub sensor_y: &'a mut [T],
-    /// The reading; NaN for one without echo.
+    /// The reading; +∞ where nothing is, NaN for any other one without echo.
     pub radius: &'a mut [T],
     /// The reading's time.
     pub t: &'a mut [i64],
@@ -106,11 +106,26 @@ pub struct Columns<'a, T> {
 pub(crate) struct Entry<T: Scalar> {
     pub sensor_position: Point2<T>,
     pub arc: Option<Arc<T>>,
+    /// The boresight of a reading that reports nothing as far as it reaches.
+    pub beyond: Option<Vector2<T>>,
     pub t: i64,
     pub travel: Travel,
     pub arrival: u32,
     pub beam: Beam<T>,
     pub range_resolution: RangeResolution<T>,
+}
+
+/// Where a reading looks, and how far the first thing there is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sight<T: Scalar> {
+    pub sensor: Point2<T>,
+    /// Along the boresight, and its length.
+    pub axis: Vector2<T>,
+    pub length: T,
+    /// tan(φ/4), as numerator and denominator.
+    pub tangent: [T; 2],
+    /// Metres; +∞ where nothing is.
+    pub range: T,
 }
 
 fn put<V>(column: &mut [V], slot: usize, value: V) {
@@ -131,9 +146,13 @@ pub(crate) fn part<'a, V>(column: &'a [V], slots: &Range<usize>) -> &'a [V] {
 impl<T: Scalar> Columns<'_, T> {
     #[inline(always)]
     pub(crate) fn write(&mut self, slot: usize, entry: &Entry<T>) {
-        let (middle, radius, reach) = match &entry.arc {
-            Some(arc) => (arc.middle, arc.radius, arc.reach),
-            None => (entry.sensor_position, T::NAN, T::NAN),
+        let (middle, radius, reach) = match (&entry.arc, entry.beyond) {
+            (Some(arc), _) => (arc.middle, arc.radius, arc.reach),
+            // No arc to meet, but a sight: see [`Columns::sight`].
+            (None, Some(boresight)) => {
+                (entry.sensor_position + boresight * entry.beam.quarter_tangent(), T::INFINITY, T::NAN)
+            }
+            (None, None) => (entry.sensor_position, T::NAN, T::NAN),
         };
         put(self.middle_x, slot, middle.x);
         put(self.middle_y, slot, middle.y);
@@ -214,6 +233,24 @@ impl<T: Scalar> Columns<'_, T> {
             radius: at(self.radius),
             reach: at(self.reach),
         }
+    }
+
+    /// What the slot's reading says of the space before it; `None` for one that was too close, or invalid.
+    ///
+    /// A reading that reports nothing makes no arc. It is kept in the columns that an arc would take: +∞ as its radius, and
+    /// as the arc's middle its boresight from the sensor, as long as the tangent of a quarter of its beam.
+    #[inline(always)]
+    pub(crate) fn sight(&self, slot: usize) -> Option<Sight<T>> {
+        let Arc { sensor, middle, radius, reach } = self.arc(slot);
+        let axis = middle - sensor;
+        if radius < T::INFINITY {
+            return Some(Sight { sensor, axis, length: radius, tangent: [reach, radius * T::TWO], range: radius });
+        }
+        if !(radius > T::ZERO) {
+            return None;
+        }
+        let length = (axis.x * axis.x + axis.y * axis.y).square_root();
+        Some(Sight { sensor, axis, length, tangent: [length, T::ONE], range: radius })
     }
 
     pub(crate) fn sensor_position(&self, slot: usize) -> Point2<T> {

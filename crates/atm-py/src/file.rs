@@ -227,6 +227,7 @@ pub fn fuse_file<'py>(
         crossings: path("crossings", crossings)?,
         summary: path("summary", summary)?,
         keep: options::keep(keep)?,
+        consensus: None,
         schema: argument::choice("schema", schema, &schemas)?,
         passthrough,
     };

@@ -1,14 +1,17 @@
 use std::{num::NonZeroUsize, path::PathBuf};
 
 use atm::{
-    core::{Bounds, DomainError, Kind, MinAngle, OnNone, OnTwo, RangeResolution, Travel},
+    core::{Bounds, Consensus, DomainError, Held, MinAngle, OnNone, OnTwo, RangeResolution, Travel},
     log::mcap::write::SchemaKind,
 };
 use clap::{Args, ValueEnum};
 
 use super::{
     log::{Format, LogArgs},
-    values::{history, kind, min_angle, positive_duration, positive_length, positive_number, range_resolution, travel},
+    values::{
+        confidence, error_length, history, kind, min_angle, positive_duration, positive_length, positive_number,
+        range_resolution, travel,
+    },
 };
 
 #[derive(Debug, Args)]
@@ -16,7 +19,9 @@ use super::{
 Recordings (MCAP) of ROS 2, ROS 1 and Foxglove need no more. \
 Long tables have the columns t,sensor,range,x,y,yaw, wide ones t,x,y,yaw and one for each sensor; rigs may describe others. \
 Out comes t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance. For driving, --keep median,single: \
-a reading without crossings falls back to the centre of its cone, and shuts openings as the cone does.")]
+a reading without crossings falls back to the centre of its cone, and shuts openings as the cone does. \
+With --estimator consensus the kinds are point, wall and center, and \
+support,against,sigma_azimuth,sigma_range,normal_x,normal_y follow the other columns.")]
 pub struct Fuse {
     /// The log: a path, or - for standard input. Several with --out-dir
     #[arg(required = true, value_name = "INPUT")]
@@ -56,9 +61,21 @@ pub struct Fuse {
     /// Skip a reading whose sensor moved less than this since its last one in the local map
     #[arg(long, value_name = "L", value_parser = positive_length)]
     pub min_step: Option<f64>,
-    /// Skip a reading equal to its sensor's previous one, for rings that repeat held values
-    #[arg(long)]
+    /// Skip a reading equal to its sensor's previous one, for rings that repeat held values: --held drop
+    #[arg(long, conflicts_with = "held")]
     pub drop_held: bool,
+    /// What becomes of a reading equal to its sensor's previous one
+    #[arg(long, value_enum, default_value = "keep")]
+    pub held: HeldOption,
+    /// Who says where on its arc an echo came from
+    #[arg(long, value_enum, default_value = "atm")]
+    pub estimator: EstimatorOption,
+    /// The least confidence of a point or wall of the consensus [default: 0.9]
+    #[arg(long, value_name = "SHARE", value_parser = confidence)]
+    pub confidence: Option<f64>,
+    /// By how much ranges are wrong beyond their rounding, as a standard deviation, for the consensus [default: 0]
+    #[arg(long, value_name = "L", value_parser = error_length)]
+    pub range_error: Option<f64>,
     /// Crossings count from this angle on [default: 30deg]
     #[arg(long, value_name = "A", value_parser = min_angle, conflicts_with = "improvement")]
     pub min_angle: Option<MinAngle<f64>>,
@@ -82,7 +99,7 @@ pub struct Fuse {
     pub on_two: TwoOption,
     /// Write only these kinds of echoes [default: all]
     #[arg(long, value_name = "KIND", value_delimiter = ',', value_parser = kind)]
-    pub keep: Vec<Kind>,
+    pub keep: Vec<&'static str>,
     /// Also write every transversal crossing, as CSV, or as a recording where the name ends in .mcap
     #[arg(long, value_name = "FILE")]
     pub crossings: Option<String>,
@@ -123,6 +140,24 @@ pub enum Emit {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum HeldOption {
+    /// It is a reading like any other
+    Keep,
+    /// It is skipped
+    Drop,
+    /// Of a run of them the first stays, and the last before a change
+    Edges,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorOption {
+    /// The median of the arc's transversal crossings
+    Atm,
+    /// Points and walls that the readings agree on, with their uncertainty
+    Consensus,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum NoneOption {
     /// The arc's centre
     Center,
@@ -160,9 +195,26 @@ impl From<TwoOption> for OnTwo {
 }
 
 impl Fuse {
+    /// The consensus for a wanted angle, if that is the estimator.
+    pub fn consensus(&self, min_angle: MinAngle<f64>) -> Result<Option<Consensus<f64>>, DomainError> {
+        if self.estimator != EstimatorOption::Consensus {
+            return Ok(None);
+        }
+        let mut consensus = Consensus::new(min_angle);
+        if let Some(confidence) = self.confidence {
+            consensus = consensus.with_min_confidence(confidence)?;
+        }
+        consensus.with_range_error(self.range_error.unwrap_or(0.0)).map(Some)
+    }
+
     /// The bounds on the local map.
     pub fn bounds(&self) -> Result<Bounds<f64>, DomainError> {
-        let mut bounds = Bounds::NONE.with_held_dropped(self.drop_held);
+        let mut bounds = Bounds::NONE.with_held(match self.held {
+            _ if self.drop_held => Held::Drop,
+            HeldOption::Keep => Held::Keep,
+            HeldOption::Drop => Held::Drop,
+            HeldOption::Edges => Held::Edges,
+        });
         if let Some(age) = self.max_age {
             bounds = bounds.with_max_age(age);
         }

@@ -4,7 +4,7 @@ use std::{fmt::Display, str::FromStr};
 
 use atm::{
     compare::Name,
-    core::{Beam, Kind, MinAngle, RangeResolution, Travel},
+    core::{Beam, Kind, MinAngle, RangeResolution, Reflector, Travel},
     storage::LatestSlots,
     units,
 };
@@ -17,9 +17,25 @@ pub fn history(text: &str) -> Result<usize, String> {
     }
 }
 
-pub fn kind(text: &str) -> Result<Kind, String> {
-    let kinds = Kind::ALL.map(Kind::name).join(", ");
-    Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(|| format!("{text} is none of {kinds}"))
+/// A kind of either estimator, by its name.
+pub fn kind(text: &str) -> Result<&'static str, String> {
+    let (kinds, reflectors) = (Kind::ALL.map(Kind::name), Reflector::ALL.map(Reflector::name));
+    let all = || kinds.into_iter().chain(reflectors);
+    all().find(|kind| *kind == text).ok_or_else(|| {
+        format!("{text} is none of {}; nor of {} (--estimator consensus)", kinds.join(", "), reflectors.join(", "))
+    })
+}
+
+pub fn confidence(text: &str) -> Result<f64, String> {
+    match f64::from_str(text) {
+        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
+        _ => Err(format!("{text} is no share from 0 to below 1")),
+    }
+}
+
+pub fn error_length(text: &str) -> Result<f64, String> {
+    let length = units::length(text).map_err(words)?;
+    if length >= 0.0 { Ok(length) } else { Err(format!("{text} is negative")) }
 }
 
 fn words(error: impl Display) -> String {

@@ -3,7 +3,7 @@
 use std::{collections::BTreeSet, io::Write, sync::Arc};
 
 use atm::{
-    core::Kind,
+    core::{Kind, Reflector},
     draw::{
         Panel, Picture, Scene,
         drive::{Key, drive},
@@ -157,7 +157,7 @@ impl Inputs {
 
 /// Whether it is a kind of echoes, in the inputs or not.
 fn is_kind(name: &str) -> bool {
-    Kind::ALL.iter().any(|kind| kind.name() == name)
+    Kind::ALL.map(Kind::name).contains(&name) || Reflector::ALL.map(Reflector::name).contains(&name)
 }
 
 /// The layers of a log.

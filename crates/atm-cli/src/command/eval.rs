@@ -1,7 +1,7 @@
 //! `atm eval`: how good echoes are, where the world is known.
 
 use atm::{
-    core::Kind,
+    core::{Kind, Reflector},
     eval::{Judge, Metrics, Scores, Spread, evaluate, views},
     log::{Input, View, echo_table::EchoTable, truth::Truth},
     summary::Dropped,
@@ -54,10 +54,11 @@ fn as_json(scores: &Scores) -> Result<String, Failure> {
 type Errors = fn(&Metrics) -> &Spread;
 
 fn as_text(scores: &Scores) -> String {
-    // The fuser's kinds in their order, then whatever else there is.
-    let known = Kind::ALL.map(Kind::name);
+    // The estimators' kinds in their order, then whatever else there is.
+    let sharp = [Reflector::Point, Reflector::Wall].map(Reflector::name);
+    let known: Vec<&str> = sharp.into_iter().chain(Kind::ALL.map(Kind::name)).collect();
     let others = scores.by_kind.keys().map(String::as_str).filter(|name| !known.contains(name));
-    let kinds = known.into_iter().chain(others).filter_map(|name| Some((name, scores.by_kind.get(name)?)));
+    let kinds = known.iter().copied().chain(others).filter_map(|name| Some((name, scores.by_kind.get(name)?)));
     let columns: Vec<(&str, &Metrics)> = std::iter::once(("all", &scores.all)).chain(kinds).collect();
     let mut text = String::from("lengths in inches (metres)\n");
     let mut row = |name: &str, cells: Vec<String>| {

@@ -2,15 +2,15 @@
 mod fleet;
 
 use atm::{
-    core::{Kind, MinAngle, TransversalMedian},
-    job::{Ended, FuseJob, LogJob},
+    core::{DomainError, Kind, MinAngle, Reflector, TransversalMedian},
+    job::{ConsensusJob, Ended, FuseJob, LogJob},
     pipeline::{self, Emit, SensorModel, Settings},
     summary::Summary,
 };
 
 use crate::{
     Failure, Outcome,
-    args::{self, Fuse},
+    args::{self, EstimatorOption, Fuse, NoneOption, TwoOption},
     command, interrupt, is_reader_gone, report,
 };
 
@@ -19,14 +19,16 @@ const MANY_NEAR: f64 = 0.2;
 
 /// Runs the command.
 pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
+    check_estimator(args)?;
     if let Some(directory) = &args.out_dir {
         return fleet::run(args, directory);
     }
     let [input] = &args.inputs[..] else {
         return Err(Failure::Usage("several logs are fused into a directory: name it with --out-dir".into()));
     };
-    let job = job(args, input, args.output.clone())?;
+    let mut job = job(args, input, args.output.clone())?;
     let settings = settings(args, &job.log.models()?)?;
+    job.consensus = consensus(args, &settings)?;
     let mut bar = None;
     let mut progress = |bytes, length| {
         bar.get_or_insert_with(|| report::progress(length, args.quiet)).set_position(bytes);
@@ -52,7 +54,8 @@ pub(super) fn job(args: &Fuse, input: &str, output: String) -> Result<FuseJob, F
         to: args.to.map(Into::into),
         crossings: args.crossings.clone(),
         summary: args.summary.clone(),
-        keep: (!args.keep.is_empty()).then(|| args.keep.clone()),
+        keep: kept(args, Kind::ALL, Kind::name),
+        consensus: None,
         schema: args.schema.into(),
         passthrough: args.passthrough,
     })
@@ -77,8 +80,46 @@ pub(super) fn said(
     (words, result.map(|()| outcome).map_err(|error| command::unfinished(error, "fused", &partials)))
 }
 
+/// The kinds of one estimator that are to be written, where not all are.
+fn kept<K: Copy>(args: &Fuse, all: impl IntoIterator<Item = K>, name: impl Fn(K) -> &'static str) -> Option<Vec<K>> {
+    (!args.keep.is_empty()).then(|| all.into_iter().filter(|kind| args.keep.contains(&name(*kind))).collect())
+}
+
+/// The consensus, if that is the estimator.
+pub(super) fn consensus(args: &Fuse, settings: &Settings) -> Result<Option<ConsensusJob>, Failure> {
+    let keep = kept(args, Reflector::ALL, Reflector::name);
+    let estimator = args.consensus(settings.estimator.min_angle).map_err(usage)?;
+    Ok(estimator.map(|estimator| ConsensusJob { estimator, keep }))
+}
+
+/// Refuses options that belong to the other estimator.
+fn check_estimator(args: &Fuse) -> Result<(), Failure> {
+    let consensus = args.estimator == EstimatorOption::Consensus;
+    let options = [
+        (consensus && args.on_none != NoneOption::Center, "--on-none"),
+        (consensus && args.on_two != TwoOption::Drop, "--on-two"),
+        (!consensus && args.confidence.is_some(), "--confidence"),
+        (!consensus && args.range_error.is_some(), "--range-error"),
+    ];
+    let estimator = if consensus { "consensus" } else { "atm" };
+    if let Some((_, option)) = options.into_iter().find(|(given, _)| *given) {
+        return Err(Failure::Usage(format!("{option} says nothing to --estimator {estimator}")));
+    }
+    let is_its_own = |kind: &&str| match consensus {
+        true => Reflector::ALL.iter().any(|own| own.name() == *kind),
+        false => Kind::ALL.iter().any(|own| own.name() == *kind),
+    };
+    match args.keep.iter().find(|kind| !is_its_own(kind)) {
+        Some(kind) => Err(Failure::Usage(format!("--keep {kind}: --estimator {estimator} gives no such kind"))),
+        None => Ok(()),
+    }
+}
+
+fn usage(error: DomainError) -> Failure {
+    Failure::Usage(error.to_string())
+}
+
 pub(super) fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings, Failure> {
-    let usage = |error: atm::core::DomainError| Failure::Usage(error.to_string());
     let min_angle = match (args.min_angle, args.improvement, args.at) {
         (Some(angle), ..) => angle,
         (None, Some(improvement), Some(distance)) => {

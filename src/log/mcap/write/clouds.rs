@@ -1,8 +1,85 @@
 //! Echoes and crossings as the points of clouds.
 
-use atm_core::{ArcCrossing, Echo, Kind};
+use atm_core::{ArcCrossing, ConsensusEcho, Echo, Point2};
 
-use super::{content::Color, points::kind_number, sweep::MOST_POINTS};
+use super::{
+    content::Color,
+    points::{ALIGNMENT, kind_number},
+    sweep::MOST_POINTS,
+};
+
+/// An echo of either estimator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum AnyEcho {
+    Median(Echo<f64>),
+    Consensus(ConsensusEcho<f64>),
+}
+
+impl AnyEcho {
+    pub(super) const fn t(&self) -> i64 {
+        match self {
+            Self::Median(echo) => echo.t,
+            Self::Consensus(echo) => echo.t,
+        }
+    }
+
+    pub(super) const fn position(&self) -> Point2<f64> {
+        match self {
+            Self::Median(echo) => echo.position,
+            Self::Consensus(echo) => echo.position,
+        }
+    }
+
+    const fn kind(&self) -> &'static str {
+        match self {
+            Self::Median(echo) => echo.kind.name(),
+            Self::Consensus(echo) => echo.kind.name(),
+        }
+    }
+
+    /// Colours that people with any colour vision tell apart (Okabe and Ito, "Color Universal Design"): blue is sharp, orange is not.
+    pub(super) fn color(&self) -> Color {
+        match self.kind() {
+            "median" | "point" => Color::new(0x00_72_b2, 0xff),
+            "wall" => Color::new(0x00_9e_73, 0xff),
+            "single" => Color::new(0x56_b4_e9, 0xff),
+            "near" => Color::new(0xcc_79_a7, 0xff),
+            "pair" => Color::new(0xe6_9f_00, 0xff),
+            _ => Color::new(0xd5_5e_00, 0xc0),
+        }
+    }
+
+    /// The fields of an echo behind its place, in their order.
+    pub(super) fn put(&self, bytes: &mut Vec<u8>, since: i64) {
+        let (measures, crossings, sensor) = match self {
+            Self::Median(echo) => {
+                ([echo.range, echo.azimuth(), echo.resolution, echo.significance()], echo.crossings, echo.sensor)
+            }
+            Self::Consensus(echo) => {
+                ([echo.range, echo.azimuth(), echo.resolution, echo.significance()], echo.support, echo.sensor)
+            }
+        };
+        put_all(bytes, &measures);
+        bytes.extend_from_slice(&offset(self.t(), since).to_le_bytes());
+        bytes.extend_from_slice(&crossings.to_le_bytes());
+        bytes.extend_from_slice(&sensor.to_le_bytes());
+        bytes.push(kind_number(self.kind()));
+        if let Self::Consensus(echo) = self {
+            // Points begin at multiples of it.
+            bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
+            let [x, y] = echo.normal.map_or([f64::NAN; 2], |normal| [normal.x, normal.y]);
+            put_all(bytes, &[echo.sigma_azimuth, echo.sigma_range, x, y]);
+            bytes.extend_from_slice(&echo.support.to_le_bytes());
+            bytes.extend_from_slice(&echo.against.to_le_bytes());
+        }
+    }
+}
+
+fn put_all(bytes: &mut Vec<u8>, values: &[f64]) {
+    for value in values {
+        bytes.extend_from_slice(&value.to_le_bytes());
+    }
+}
 
 /// Runs of at most [`MOST_POINTS`] that lie within 2³² ns: so wide is a point's own time.
 pub(super) fn runs<'a, T>(all: &'a [T], t: impl Fn(&T) -> i64 + 'a) -> impl Iterator<Item = &'a [T]> {
@@ -25,23 +102,10 @@ pub(super) fn earliest<T>(run: &[T], t: impl Fn(&T) -> i64) -> i64 {
     run.iter().map(t).min().unwrap_or(0)
 }
 
-/// The fields of an echo behind its place, in their order.
-pub(super) fn put_echo(bytes: &mut Vec<u8>, echo: &Echo<f64>, since: i64) {
-    for value in [echo.range, echo.azimuth(), echo.resolution, echo.significance()] {
-        bytes.extend_from_slice(&value.to_le_bytes());
-    }
-    bytes.extend_from_slice(&offset(echo.t, since).to_le_bytes());
-    bytes.extend_from_slice(&echo.crossings.to_le_bytes());
-    bytes.extend_from_slice(&echo.sensor.to_le_bytes());
-    bytes.push(kind_number(echo.kind));
-}
-
 /// The fields of a crossing behind its place, in their order.
 pub(super) fn put_crossing(bytes: &mut Vec<u8>, crossing: &ArcCrossing<f64>, since: i64) {
     let other = (i128::from(crossing.t_other) - i128::from(since)) as f64;
-    for value in [crossing.bearing.azimuth(), crossing.angle, other] {
-        bytes.extend_from_slice(&value.to_le_bytes());
-    }
+    put_all(bytes, &[crossing.bearing.azimuth(), crossing.angle, other]);
     bytes.extend_from_slice(&offset(crossing.t, since).to_le_bytes());
     bytes.extend_from_slice(&crossing.sensor.to_le_bytes());
     bytes.extend_from_slice(&crossing.sensor_other.to_le_bytes());
@@ -50,15 +114,4 @@ pub(super) fn put_crossing(bytes: &mut Vec<u8>, crossing: &ArcCrossing<f64>, sin
 /// Nanoseconds from the message's stamp; within a run they fit.
 fn offset(t: i64, since: i64) -> u32 {
     u32::try_from(t.abs_diff(since)).unwrap_or(u32::MAX)
-}
-
-/// Colours that people with any colour vision tell apart (Okabe and Ito, "Color Universal Design"): blue is sharp, orange is not.
-pub(super) const fn color_of(kind: Kind) -> Color {
-    match kind {
-        Kind::Median => Color::new(0x00_72_b2, 0xff),
-        Kind::Single => Color::new(0x56_b4_e9, 0xff),
-        Kind::Near => Color::new(0xcc_79_a7, 0xff),
-        Kind::Pair => Color::new(0xe6_9f_00, 0xff),
-        _ => Color::new(0xd5_5e_00, 0xc0),
-    }
 }

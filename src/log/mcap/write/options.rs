@@ -64,6 +64,8 @@ pub struct Options {
     pub layout: Layout,
     /// What is written.
     pub contents: Contents,
+    /// The echoes are the consensus's, with the fields that it has besides.
+    pub consensus: bool,
     /// The frames, as far as they are known beforehand.
     pub frames: Frames,
     /// H: so many arcs of each sensor stay drawn.
@@ -73,12 +75,13 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Everything, for Foxglove, in a file, with the default frames, and H of the paper.
+    /// Everything of the median, for Foxglove, in a file, with the default frames, and H of the paper.
     fn default() -> Self {
         Self {
             kind: SchemaKind::default(),
             layout: Layout::default(),
             contents: Contents::default(),
+            consensus: false,
             frames: Frames::default(),
             history: 10,
             pass_window: None,

@@ -9,8 +9,6 @@
 //!
 //! What follows is the same in both.
 
-use atm_core::Kind;
-
 use super::{content::Color, schema::SchemaKind};
 
 /// Names of fields: metres, radians, nanoseconds.
@@ -47,13 +45,25 @@ pub mod names {
     pub const KIND: &str = "kind";
     /// The crossing angle.
     pub const ANGLE: &str = "angle";
+    /// Of the consensus: readings that agree.
+    pub const SUPPORT: &str = "support";
+    /// Of the consensus: readings that look there and report clearly farther, or nothing.
+    pub const AGAINST: &str = "against";
+    /// Of the consensus: standard deviation of the azimuth.
+    pub const SIGMA_AZIMUTH: &str = "sigma_azimuth";
+    /// Of the consensus: standard deviation of the distance from the sensor.
+    pub const SIGMA_RANGE: &str = "sigma_range";
+    /// Of the consensus: a wall's normal, NaN but for walls.
+    pub const NORMAL_X: &str = "normal_x";
+    /// Of the consensus: a wall's normal, NaN but for walls.
+    pub const NORMAL_Y: &str = "normal_y";
 }
 
-/// The kinds of echoes in order of their numbers: a point's `kind` is an index into them.
-pub const KINDS: [Kind; 5] = [Kind::Median, Kind::Single, Kind::Center, Kind::Near, Kind::Pair];
+/// The kinds of echoes, of either estimator, in order of their numbers: a point's `kind` is an index into them.
+pub const KINDS: [&str; 7] = ["median", "single", "center", "near", "pair", "point", "wall"];
 
 /// The number of a kind.
-pub(super) fn kind_number(kind: Kind) -> u8 {
+pub(super) fn kind_number(kind: &str) -> u8 {
     KINDS.iter().zip(0..).find(|(known, _)| **known == kind).map_or(u8::MAX, |(_, number)| number)
 }
 
@@ -114,6 +124,16 @@ const ECHO: Fields = &[
     (names::KIND, Number::U8),
 ];
 
+/// What the consensus says of an echo besides.
+const CONSENSUS: Fields = &[
+    (names::SIGMA_AZIMUTH, Number::F64),
+    (names::SIGMA_RANGE, Number::F64),
+    (names::NORMAL_X, Number::F64),
+    (names::NORMAL_Y, Number::F64),
+    (names::SUPPORT, Number::U32),
+    (names::AGAINST, Number::U32),
+];
+
 /// A cloud of crossings.
 const CROSSING: Fields = &[
     (names::AZIMUTH, Number::F64),
@@ -124,7 +144,7 @@ const CROSSING: Fields = &[
     (names::SENSOR_OTHER, Number::U16),
 ];
 
-/// What every point of a Foxglove cloud begins with; four bytes stay unused.
+/// What every point of a Foxglove cloud begins with.
 const FOXGLOVE_PLACE: Fields = &[
     (names::X, Number::F64),
     (names::Y, Number::F64),
@@ -158,15 +178,15 @@ const FOXGLOVE_DOT: Fields = &[
 const ROS_DOT: Fields =
     &[(names::X, Number::F32), (names::Y, Number::F32), (names::Z, Number::F32), ("rgb", Number::U32)];
 
-/// Bytes of place and colour before the other fields.
-const PLACE_SIZE: usize = 32;
-/// Strides are multiples of this, so that every field is aligned.
-const ALIGNMENT: usize = 8;
+/// Strides are multiples of this, and each list of fields begins at one, so that every field is aligned.
+pub(super) const ALIGNMENT: usize = 8;
 
 /// What a cloud's points are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Points {
     Echoes,
+    /// Echoes of the consensus.
+    Consensus,
     Crossings,
     /// Place and colour alone.
     Dots,
@@ -183,20 +203,21 @@ pub(super) struct PointLayout {
 
 impl PointLayout {
     fn new(kind: SchemaKind, points: Points) -> Self {
-        let (place, rest) = match (points, kind) {
-            (Points::Dots, SchemaKind::Foxglove) => (FOXGLOVE_DOT, Fields::default()),
-            (Points::Dots, SchemaKind::Ros2) => (ROS_DOT, Fields::default()),
-            (Points::Echoes, SchemaKind::Foxglove) => (FOXGLOVE_PLACE, ECHO),
-            (Points::Echoes, SchemaKind::Ros2) => (ROS_PLACE, ECHO),
-            (Points::Crossings, SchemaKind::Foxglove) => (FOXGLOVE_PLACE, CROSSING),
-            (Points::Crossings, SchemaKind::Ros2) => (ROS_PLACE, CROSSING),
+        let place = match (points, kind) {
+            (Points::Dots, SchemaKind::Foxglove) => FOXGLOVE_DOT,
+            (Points::Dots, SchemaKind::Ros2) => ROS_DOT,
+            (_, SchemaKind::Foxglove) => FOXGLOVE_PLACE,
+            (_, SchemaKind::Ros2) => ROS_PLACE,
         };
-        let mut fields = Vec::with_capacity(place.len() + rest.len());
-        let mut end = 0;
-        for (start, list) in [(0, place), (PLACE_SIZE, rest)] {
-            if !list.is_empty() {
-                end = start;
-            }
+        let rest: &[Fields] = match points {
+            Points::Dots => &[],
+            Points::Echoes => &[ECHO],
+            Points::Consensus => &[ECHO, CONSENSUS],
+            Points::Crossings => &[CROSSING],
+        };
+        let (mut fields, mut end) = (Vec::new(), 0_usize);
+        for list in std::iter::once(place).chain(rest.iter().copied()) {
+            end = end.next_multiple_of(ALIGNMENT);
             for &(name, number) in list {
                 fields.push((name, end, number));
                 end += number.size();
@@ -249,6 +270,7 @@ impl PointLayout {
 #[derive(Debug)]
 pub(super) struct Layouts {
     echoes: PointLayout,
+    consensus: PointLayout,
     crossings: PointLayout,
     dots: PointLayout,
 }
@@ -256,12 +278,18 @@ pub(super) struct Layouts {
 impl Layouts {
     pub(super) fn new(kind: SchemaKind) -> Self {
         let layout = |points| PointLayout::new(kind, points);
-        Self { echoes: layout(Points::Echoes), crossings: layout(Points::Crossings), dots: layout(Points::Dots) }
+        Self {
+            echoes: layout(Points::Echoes),
+            consensus: layout(Points::Consensus),
+            crossings: layout(Points::Crossings),
+            dots: layout(Points::Dots),
+        }
     }
 
     pub(super) const fn of(&self, points: Points) -> &PointLayout {
         match points {
             Points::Echoes => &self.echoes,
+            Points::Consensus => &self.consensus,
             Points::Crossings => &self.crossings,
             Points::Dots => &self.dots,
         }

@@ -2,10 +2,10 @@
 
 use std::{collections::BTreeSet, io::Write, sync::Arc};
 
-use atm_core::{ArcCrossing, Echo, Isometry2, Reading, UnitComplex, Vector2};
+use atm_core::{ArcCrossing, ConsensusEcho, Echo, Isometry2, Reading, UnitComplex, Vector2};
 
 use super::{
-    clouds::{color_of, earliest, put_crossing, put_echo, runs},
+    clouds::{AnyEcho, earliest, put_crossing, runs},
     content::{Cloud, Content, Transform, pose_of},
     file::{Layout, McapFile},
     merged::Merged,
@@ -175,13 +175,13 @@ impl<W: Write> McapSink<W> {
 
     fn write_echoes(&mut self) -> Result<()> {
         let echoes = std::mem::take(&mut self.sweep.echoes);
-        for run in runs(&echoes, |echo| echo.t) {
-            let since = earliest(run, |echo| echo.t);
-            let layout = self.layouts.of(Points::Echoes);
+        for run in runs(&echoes, AnyEcho::t) {
+            let since = earliest(run, AnyEcho::t);
+            let layout = self.layouts.of(Topic::Echoes.points(&self.options));
             self.bytes.clear();
             for echo in run {
-                let (place, color) = (echo.position, color_of(echo.kind));
-                layout.push(&mut self.bytes, place.x, place.y, color, |bytes| put_echo(bytes, echo, since));
+                let place = echo.position();
+                layout.push(&mut self.bytes, place.x, place.y, echo.color(), |bytes| echo.put(bytes, since));
             }
             self.send_cloud(Topic::Echoes, since)?;
         }
@@ -231,8 +231,8 @@ impl<W: Write> McapSink<W> {
         if self.echoes.take_due(at_end) {
             let dots = self.layouts.of(Points::Dots);
             self.bytes.clear();
-            for (place, kind) in self.echoes.iter() {
-                dots.push(&mut self.bytes, place.x, place.y, color_of(*kind), |_| {});
+            for (place, color) in self.echoes.iter() {
+                dots.push(&mut self.bytes, place.x, place.y, *color, |_| {});
             }
             self.send_cloud(Topic::Map, self.sweep.t)?;
         }
@@ -250,9 +250,21 @@ impl<W: Write> McapSink<W> {
         Ok(())
     }
 
+    /// Takes an echo in.
+    fn add(&mut self, echo: AnyEcho) -> Result<bool> {
+        if self.options.contents == Contents::Everything {
+            self.echoes.push(echo.position(), echo.color());
+            self.sweep.echoes.push(echo);
+            if self.sweep.echoes.len() >= MOST_POINTS {
+                self.write_echoes()?;
+            }
+        }
+        Ok(true)
+    }
+
     /// Sends the points that were gathered in `bytes`.
     fn send_cloud(&mut self, topic: Topic, t: i64) -> Result<()> {
-        let layout = self.layouts.of(topic.points());
+        let layout = self.layouts.of(topic.points(&self.options));
         let cloud = Cloud { t, frame: &self.options.frames.fixed, layout, points: &self.bytes };
         let channel = channel(&self.channels, topic);
         send(&self.file, &mut self.encoder, channel, self.log_time, &Content::Cloud(cloud))
@@ -325,14 +337,11 @@ impl<W: Write> EchoSink for McapSink<W> {
     }
 
     fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        if self.options.contents == Contents::Everything {
-            self.sweep.echoes.push(*echo);
-            self.echoes.push(echo.position, echo.kind);
-            if self.sweep.echoes.len() >= MOST_POINTS {
-                self.write_echoes()?;
-            }
-        }
-        Ok(true)
+        self.add(AnyEcho::Median(*echo))
+    }
+
+    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
+        self.add(AnyEcho::Consensus(*echo))
     }
 
     fn wants_crossings(&self) -> bool {

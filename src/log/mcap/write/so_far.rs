@@ -3,8 +3,9 @@
 
 use std::collections::VecDeque;
 
-use atm_core::{Kind, Point2};
+use atm_core::Point2;
 
+use super::content::Color;
 use crate::track::Pose;
 
 /// Echoes that are kept.
@@ -17,16 +18,16 @@ const FIRST_SPACING: f64 = 0.02;
 /// The latest echoes.
 #[derive(Debug, Default)]
 pub(super) struct EchoesSoFar {
-    echoes: VecDeque<(Point2<f64>, Kind)>,
+    echoes: VecDeque<(Point2<f64>, Color)>,
     new: usize,
 }
 
 impl EchoesSoFar {
-    pub(super) fn push(&mut self, position: Point2<f64>, kind: Kind) {
+    pub(super) fn push(&mut self, position: Point2<f64>, color: Color) {
         if self.echoes.len() == MOST_ECHOES {
             self.echoes.pop_front();
         }
-        self.echoes.push_back((position, kind));
+        self.echoes.push_back((position, color));
         self.new += 1;
     }
 
@@ -39,7 +40,7 @@ impl EchoesSoFar {
         due
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = &(Point2<f64>, Kind)> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &(Point2<f64>, Color)> {
         self.echoes.iter()
     }
 }
@@ -143,7 +144,7 @@ mod tests {
         let mut echoes = EchoesSoFar::default();
         let mut points = 0;
         for index in 0..4 * MOST_ECHOES {
-            echoes.push(Point2::new(index as f64, 0.0), Kind::Median);
+            echoes.push(Point2::new(index as f64, 0.0), Color::new(0, 0xff));
             if echoes.take_due(false) {
                 points += echoes.iter().count();
             }
@@ -151,7 +152,7 @@ mod tests {
         assert_eq!(echoes.iter().count(), MOST_ECHOES);
         assert!(points <= 11 * 4 * MOST_ECHOES, "{points}");
         echoes.take_due(true);
-        echoes.push(Point2::origin(), Kind::Median);
+        echoes.push(Point2::origin(), Color::new(0, 0xff));
         assert!(!echoes.take_due(false) && echoes.take_due(true) && !echoes.take_due(true));
     }
 }

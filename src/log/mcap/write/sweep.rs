@@ -1,8 +1,11 @@
 //! One sweep of the sensors: what goes into one message of each sort.
 
-use atm_core::{ArcCrossing, Echo, Isometry2, Point2, Reading};
+use atm_core::{ArcCrossing, Isometry2, Point2, Reading};
 
-use super::content::{Color, Drawing, Form, Scene};
+use super::{
+    clouds::AnyEcho,
+    content::{Color, Drawing, Form, Scene},
+};
 use crate::{log::Row, track::Pose};
 
 /// A sweep lasts no longer, in nanoseconds of log time: so much later than its report an echo may be logged.
@@ -43,7 +46,7 @@ pub(super) struct Sweep {
     number: u64,
     pub(super) placed: Vec<Placed>,
     pub(super) pose: Option<(i64, Pose)>,
-    pub(super) echoes: Vec<Echo<f64>>,
+    pub(super) echoes: Vec<AnyEcho>,
     pub(super) crossings: Vec<ArcCrossing<f64>>,
     pub(super) arcs: Scene,
     pub(super) marks: Scene,

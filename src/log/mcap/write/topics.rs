@@ -79,8 +79,9 @@ impl Topic {
     }
 
     /// What a cloud of the topic is made of.
-    pub(super) const fn points(self) -> Points {
+    pub(super) const fn points(self, options: &Options) -> Points {
         match self {
+            Self::Echoes if options.consensus => Points::Consensus,
             Self::Echoes => Points::Echoes,
             Self::CrossingPoints => Points::Crossings,
             _ => Points::Dots,

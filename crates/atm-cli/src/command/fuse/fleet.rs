@@ -15,7 +15,7 @@ use std::{
 use atm::{error::Error, job::FuseJob, log::format::Format, pipeline::Settings};
 use indicatif::ProgressBar;
 
-use super::{job, said, settings};
+use super::{consensus, job, said, settings};
 use crate::{Failure, Outcome, args::Fuse, interrupt, report};
 
 /// What is told of one log, and how it ended.
@@ -23,10 +23,11 @@ type Told = (Vec<String>, Result<Outcome, Failure>);
 
 /// Fuses every log into `directory`, several at the same time; what is told of them is in the order of the command line.
 pub fn run(args: &Fuse, directory: &Path) -> Result<Outcome, Failure> {
-    let jobs = jobs(args, directory)?;
+    let mut jobs = jobs(args, directory)?;
     let models = jobs.first().map(|job| job.log.models()).transpose()?.unwrap_or_default();
     let settings = settings(args, &models)?;
-    for job in &jobs {
+    for job in &mut jobs {
+        job.consensus = consensus(args, &settings)?;
         job.check()?;
     }
     fs::create_dir_all(directory)
