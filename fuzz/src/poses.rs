@@ -38,17 +38,17 @@ fn read(input: Input, format: Option<&TableFormat>) -> Said {
     Ok((poses, problems))
 }
 
-struct Listed(std::vec::IntoIter<StampedPose>);
+struct Listed<'a>(std::slice::Iter<'a, StampedPose>);
 
-impl PoseStream for Listed {
+impl PoseStream for Listed<'_> {
     fn next_pose(&mut self, _: &mut dyn FnMut(Problem)) -> atm::error::Result<Option<StampedPose>> {
-        Ok(self.0.next())
+        Ok(self.0.next().cloned())
     }
 }
 
 /// Poses at and between those there are: finite, and at a pose's own time that pose.
 fn ask(poses: &[StampedPose], max_gap: u64) {
-    let mut track = Track::new(Listed(poses.to_vec().into_iter()), max_gap);
+    let mut track = Track::new(Listed(poses.iter()), max_gap);
     let mut last: Option<i64> = None;
     for pose in poses {
         for t in [pose.t.saturating_sub(max_gap as i64 / 2), pose.t, pose.t.saturating_add(1)] {
