@@ -1,30 +1,32 @@
 //! The methods by name.
 
-use atm_core::{Kind, Limits, MinAngle, OnNone, OnTwo, TransversalMedian};
+use atm_core::{Consensus, Kind, Limits, MinAngle, OnNone, OnTwo, Reflector, TransversalMedian};
 
 use crate::{
     baseline::{
         CELL, Centerline, CommonTangents, ConstantDepth, DirectionalMaximum, Elfes, Himm, Interleave, Intersections,
         Method, MoravecElfes, Morphology, RangeLayer, TriangulationFusion, UniformArcs, Voting,
     },
-    error::Result,
+    error::{Error, Result},
     pipeline::Emit,
 };
 
 /// What can be chosen for all methods.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// H of the local map of the arc-transversal median.
+    /// H of the local map of the arc-transversal median and of the consensus.
     pub history: usize,
-    /// θmin of the arc-transversal median.
+    /// θmin of the arc-transversal median, and the resolution that the consensus is asked for.
     pub min_angle: MinAngle<f64>,
+    /// Standard deviation of a range beyond its rounding, for the consensus, in metres.
+    pub range_error: f64,
     /// Width of the cells of every grid, in metres; the method's own where it is not given.
     pub cell: Option<f64>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { history: 10, min_angle: MinAngle::PAPER, cell: None }
+        Self { history: 10, min_angle: MinAngle::PAPER, range_error: 0.0, cell: None }
     }
 }
 
@@ -43,6 +45,10 @@ pub enum Name {
     AtmTwoMean,
     /// The same without delay: each echo from the arcs before it.
     AtmLatest,
+    /// The consensus of points and walls, [`Consensus`].
+    Consensus,
+    /// The same, of which only the kinds `point` and `wall` are kept.
+    ConsensusPointWall,
     /// See [`Centerline`].
     Centerline,
     /// See [`Interleave`].
@@ -73,26 +79,32 @@ pub enum Name {
     RangeLayer,
 }
 
-/// A run of the arc-transversal median.
-pub(super) struct AtmRun {
+/// A run of the pipeline.
+pub(super) struct PipelineRun {
     pub(super) emit: Emit,
-    pub(super) estimator: TransversalMedian<f64>,
+    pub(super) median: TransversalMedian<f64>,
+    /// In place of the median.
+    pub(super) consensus: Option<Consensus<f64>>,
     /// Whether only these kinds are kept.
-    pub(super) keep: &'static [Kind],
+    pub(super) keep: &'static [&'static str],
 }
 
-/// Kinds that need a crossing.
-const CROSSED: &[Kind] = &[Kind::Median, Kind::Single];
+/// Kinds of the median that need a crossing.
+const CROSSED: &[&str] = &[Kind::Median.name(), Kind::Single.name()];
+/// Kinds of the consensus that are resolved.
+const RESOLVED: &[&str] = &[Reflector::Point.name(), Reflector::Wall.name()];
 
 impl Name {
     /// All of them, in the order in which they are listed.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 22] = [
         Self::Atm,
         Self::AtmMedianSingle,
         Self::AtmNoneDrop,
         Self::AtmTwoCenter,
         Self::AtmTwoMean,
         Self::AtmLatest,
+        Self::Consensus,
+        Self::ConsensusPointWall,
         Self::Centerline,
         Self::Interleave,
         Self::Intersections,
@@ -118,6 +130,8 @@ impl Name {
             Self::AtmTwoCenter => "atm-two-center",
             Self::AtmTwoMean => "atm-two-mean",
             Self::AtmLatest => "atm-latest",
+            Self::Consensus => "consensus",
+            Self::ConsensusPointWall => "consensus-point-wall",
             Self::Centerline => "centerline",
             Self::Interleave => "interleave",
             Self::Intersections => "intersections",
@@ -140,22 +154,27 @@ impl Name {
         Self::ALL.into_iter().find(|name| name.word() == word)
     }
 
-    /// How the pipeline is to run, if it is the arc-transversal median.
-    pub(super) fn atm(self, options: &Options) -> Option<AtmRun> {
+    /// How the pipeline is to run, if it is one of its estimators.
+    pub(super) fn pipeline(self, options: &Options) -> Result<Option<PipelineRun>> {
         let paper = TransversalMedian { min_angle: options.min_angle, ..TransversalMedian::PAPER };
-        let run = |estimator| AtmRun { emit: Emit::Settled, estimator, keep: &Kind::ALL };
-        Some(match self {
+        let run = |median| PipelineRun { emit: Emit::Settled, median, consensus: None, keep: &[] };
+        let consensus = Consensus::new(options.min_angle).with_range_error(options.range_error);
+        let consensus = consensus.map_err(|error| Error::Settings { message: error.to_string() })?;
+        let consensus = PipelineRun { consensus: Some(consensus), ..run(paper) };
+        Ok(Some(match self {
             Self::Atm => run(paper),
-            Self::AtmMedianSingle => AtmRun { keep: CROSSED, ..run(paper) },
+            Self::AtmMedianSingle => PipelineRun { keep: CROSSED, ..run(paper) },
             Self::AtmNoneDrop => run(TransversalMedian { on_none: OnNone::Drop, ..paper }),
             Self::AtmTwoCenter => run(TransversalMedian { on_two: OnTwo::Center, ..paper }),
             Self::AtmTwoMean => run(TransversalMedian { on_two: OnTwo::Mean, ..paper }),
-            Self::AtmLatest => AtmRun { emit: Emit::Latest, ..run(paper) },
-            _ => return None,
-        })
+            Self::AtmLatest => PipelineRun { emit: Emit::Latest, ..run(paper) },
+            Self::Consensus => consensus,
+            Self::ConsensusPointWall => PipelineRun { keep: RESOLVED, ..consensus },
+            _ => return Ok(None),
+        }))
     }
 
-    /// A new one of the other methods, for sensors with these range limits; `None` for the arc-transversal median.
+    /// A new one of the other methods, for sensors with these range limits; `None` for the pipeline's own.
     pub(super) fn method(self, options: &Options, limits: Vec<Limits<f64>>) -> Result<Option<Box<dyn Method>>> {
         let cell = options.cell.unwrap_or(CELL);
         Ok(Some(match self {

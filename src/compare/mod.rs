@@ -8,6 +8,7 @@ mod method;
 mod picture;
 mod recording;
 mod run;
+mod simulated;
 
 pub use self::{
     assess::{Assessment, Best, SameReadings, Sharpness, against_world, among_themselves},
@@ -15,6 +16,7 @@ pub use self::{
     picture::{cells, scene},
     recording::{Recording, Replay},
     run::{Outcome, run},
+    simulated::simulated,
 };
 
 #[cfg(test)]

@@ -90,7 +90,7 @@ impl Recording {
 
     /// The parts of the log between which the clock was set back, each as a log of its own.
     pub fn parts(&self) -> impl Iterator<Item = Replay<'_>> {
-        self.parts.iter().map(|rows| Replay { ids: &self.ids, rows: rows.iter(), position: 0 })
+        self.parts.iter().map(|rows| Replay::new(&self.ids, rows))
     }
 }
 
@@ -99,6 +99,13 @@ pub struct Replay<'a> {
     ids: &'a [Arc<str>],
     rows: std::slice::Iter<'a, Row>,
     position: u64,
+}
+
+impl<'a> Replay<'a> {
+    /// A log of these records, whose sensors are `ids`.
+    pub fn new(ids: &'a [Arc<str>], rows: &'a [Row]) -> Self {
+        Self { ids, rows: rows.iter(), position: 0 }
+    }
 }
 
 impl Source for Replay<'_> {

@@ -2,10 +2,10 @@
 
 use std::{sync::Arc, time::Instant};
 
-use atm_core::{Bounds, Echo, Kind, Reading};
+use atm_core::{Bounds, ConsensusEcho, Echo, Reading};
 
 use super::{
-    method::{AtmRun, Name, Options},
+    method::{Name, Options, PipelineRun},
     recording::Recording,
 };
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
     eval::Estimate,
     intake::{Consumer, read},
     log::Row,
-    pipeline::{EchoSink, Settings, fuse},
+    pipeline::{EchoSink, Settings, fuse, fuse_consensus},
     summary::Summary,
 };
 
@@ -25,6 +25,8 @@ pub struct Outcome {
     pub name: Name,
     /// Its points; those of segments and of grids by its own threshold among them. `None` where it does not apply to the log.
     pub estimates: Option<Vec<Estimate>>,
+    /// Of each of them how likely it is an accident, by its own estimator; `None` of methods that do not say.
+    pub significances: Option<Vec<f64>>,
     /// Ends of its straight pieces.
     pub segments: Vec<[atm_core::Point2<f64>; 2]>,
     /// Its map.
@@ -33,60 +35,85 @@ pub struct Outcome {
     pub seconds: f64,
 }
 
+impl Outcome {
+    /// Of a method that has nothing to say of the log.
+    fn nothing(name: Name) -> Self {
+        Self { name, estimates: None, significances: None, segments: Vec::new(), evidence: None, seconds: 0.0 }
+    }
+}
+
 /// Runs a method.
 ///
 /// # Errors
 /// What it has to remember grows beyond its bound, or a history of that length can't be had.
 pub fn run(name: Name, recording: &Recording, options: &Options) -> Result<Outcome> {
     let begun = Instant::now();
-    let outcome = match name.atm(options) {
-        Some(atm) => atm_outcome(name, &atm, recording, options)?,
+    let outcome = match name.pipeline(options)? {
+        Some(run) => pipeline_outcome(name, &run, recording, options)?,
         None => match name.method(options, recording.limits())? {
             Some(method) => baseline_outcome(name, method, recording)?,
-            None => Outcome { name, estimates: None, segments: Vec::new(), evidence: None, seconds: 0.0 },
+            None => Outcome::nothing(name),
         },
     };
     Ok(Outcome { seconds: begun.elapsed().as_secs_f64(), ..outcome })
 }
 
-/// The arc-transversal median, by the pipeline of `atm fuse`. What a log has after a reset of its clock is a log of its own
+/// An estimator by the pipeline of `atm fuse`. What a log has after a reset of its clock is a log of its own
 /// for it: the local map is empty, and what was in it is reported.
-fn atm_outcome(name: Name, atm: &AtmRun, recording: &Recording, options: &Options) -> Result<Outcome> {
+fn pipeline_outcome(name: Name, run: &PipelineRun, recording: &Recording, options: &Options) -> Result<Outcome> {
     let settings = Settings {
-        emit: atm.emit,
+        emit: run.emit,
         history: options.history,
         bounds: Bounds::NONE,
-        estimator: atm.estimator,
+        estimator: run.median,
         strict: false,
     };
-    let mut echoes = Echoes { ids: recording.ids(), keep: atm.keep, estimates: Vec::new() };
+    let mut echoes = Echoes { ids: recording.ids(), keep: run.keep, estimates: Vec::new(), significances: Vec::new() };
     for mut part in recording.parts() {
-        let (_, result) = fuse(&mut part, None, recording.sensors(), &settings, &mut echoes, &mut |_| ());
+        let (sensors, told) = (recording.sensors(), &mut |_| ());
+        let (_, result) = match run.consensus {
+            None => fuse(&mut part, None, sensors, &settings, &mut echoes, told),
+            Some(consensus) => fuse_consensus(consensus, &mut part, None, sensors, &settings, &mut echoes, told),
+        };
         result?;
     }
-    Ok(Outcome { name, estimates: Some(echoes.estimates), segments: Vec::new(), evidence: None, seconds: 0.0 })
+    let (estimates, significances) = (Some(echoes.estimates), Some(echoes.significances));
+    Ok(Outcome { estimates, significances, ..Outcome::nothing(name) })
 }
 
 /// The sink of those echoes.
 struct Echoes<'a> {
     ids: &'a [Arc<str>],
-    keep: &'static [Kind],
+    /// All kinds where there are none.
+    keep: &'static [&'static str],
     estimates: Vec<Estimate>,
+    significances: Vec<f64>,
+}
+
+impl Echoes<'_> {
+    /// Takes an echo of a kind, without its key, that is kept.
+    fn take(&mut self, kind: &str, (t, sensor): (i64, u16), significance: f64, estimate: Estimate) -> bool {
+        let kept = self.keep.is_empty() || self.keep.contains(&kind);
+        if kept {
+            let key = self.ids.get(usize::from(sensor)).map(|id| (t, Arc::clone(id)));
+            self.estimates.push(Estimate { key, kind: Some(Arc::from(kind)), ..estimate });
+            self.significances.push(significance);
+        }
+        kept
+    }
 }
 
 impl EchoSink for Echoes<'_> {
     fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        let kept = self.keep.contains(&echo.kind);
-        if kept {
-            self.estimates.push(Estimate {
-                position: echo.position,
-                key: self.ids.get(usize::from(echo.sensor)).map(|id| (echo.t, Arc::clone(id))),
-                azimuth: Some(echo.azimuth()),
-                range: Some(echo.range),
-                kind: Some(Arc::from(echo.kind.name())),
-            });
-        }
-        Ok(kept)
+        let (azimuth, range) = (Some(echo.azimuth()), Some(echo.range));
+        let estimate = Estimate { position: echo.position, key: None, azimuth, range, kind: None };
+        Ok(self.take(echo.kind.name(), (echo.t, echo.sensor), echo.significance(), estimate))
+    }
+
+    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
+        let (azimuth, range) = (Some(echo.azimuth()), Some(echo.range));
+        let estimate = Estimate { position: echo.position, key: None, azimuth, range, kind: None };
+        Ok(self.take(echo.kind.name(), (echo.t, echo.sensor), echo.significance(), estimate))
     }
 
     fn flush(&mut self) -> Result<()> {
@@ -104,12 +131,12 @@ fn baseline_outcome(name: Name, method: Box<dyn Method>, recording: &Recording) 
         read(&mut part, None, recording.sensors(), false, &mut feeding, &mut summary, &mut |_| ())?;
     }
     let Some(findings) = feeding.method.finish()? else {
-        return Ok(Outcome { name, estimates: None, segments: Vec::new(), evidence: None, seconds: 0.0 });
+        return Ok(Outcome::nothing(name));
     };
     let estimates = findings.marks()?.iter().map(|mark| estimate(mark, recording.ids())).collect();
     let Findings { segments, evidence, .. } = findings;
     let segments = segments.iter().map(|segment| segment.ends.map(|end| end.position)).collect();
-    Ok(Outcome { name, estimates: Some(estimates), segments, evidence, seconds: 0.0 })
+    Ok(Outcome { estimates: Some(estimates), segments, evidence, ..Outcome::nothing(name) })
 }
 
 /// A method's point as what is scored.

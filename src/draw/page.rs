@@ -40,8 +40,10 @@ pub struct Panel {
 pub struct Picture {
     /// Over all panels; none where it is empty.
     pub title: String,
-    /// From left to right; at least one is drawn.
+    /// From left to right, row by row; at least one is drawn.
     pub panels: Vec<Panel>,
+    /// How many panels stand in a row; all in one where it is not given.
+    pub columns: Option<usize>,
     /// What part of the plane they show; where it is not given, what holds their points but for a few stray ones.
     pub frame: Option<Frame>,
     /// Width in pixels, brought within [`SIDES`]; [`WIDTH`] where it is not given.
@@ -93,7 +95,8 @@ impl Picture {
             ink.text((MARGIN, MARGIN + 14.0), Anchor::Start, Font::Title, "", &words);
         }
         for (index, panel) in self.panels.iter().enumerate() {
-            let (left, mut y) = (layout.left(index), layout.headings + 12.0);
+            let (left, top) = layout.corner(index);
+            let mut y = top - layout.headings + 12.0;
             for (words, font) in [(&panel.title, Font::Heading), (&panel.subtitle, Font::Plain)] {
                 if !words.is_empty() {
                     let words = line(layout.panel_width, font, words);
@@ -117,9 +120,12 @@ impl Picture {
 pub(super) struct Layout {
     pub(super) width: f64,
     pub(super) height: f64,
-    /// Top of the panels' headings.
+    /// Height of the headings over each row of panels.
     headings: f64,
     panel_width: f64,
+    /// Panels in a row.
+    columns: usize,
+    /// Of the first panel.
     view: View,
     /// Whether somebody chose what part of the plane to show.
     chosen: bool,
@@ -131,25 +137,34 @@ impl Layout {
     fn of(picture: &Picture, entries: &[Entry]) -> Self {
         let side = |side: f64| if side.is_finite() { side.round().clamp(SIDES.0, SIDES.1) } else { WIDTH };
         let width = side(picture.width.unwrap_or(WIDTH));
-        let count = picture.panels.len().max(1) as f64;
-        let panel_width = ((width - 2.0 * MARGIN - (count - 1.0) * GAP) / count).max(1.0);
-        let headings = MARGIN + if picture.title.is_empty() { 0.0 } else { LINE + 8.0 };
+        let count = picture.panels.len().max(1);
+        let columns = picture.columns.unwrap_or(count).clamp(1, count);
+        let (across, down) = (columns as f64, count.div_ceil(columns) as f64);
+        let panel_width = ((width - 2.0 * MARGIN - (across - 1.0) * GAP) / across).max(1.0);
         let has = |line: fn(&Panel) -> bool| if picture.panels.iter().any(line) { LINE } else { 0.0 };
-        let top = headings + has(|panel| !panel.title.is_empty()) + has(|panel| !panel.subtitle.is_empty());
+        let headings = has(|panel| !panel.title.is_empty()) + has(|panel| !panel.subtitle.is_empty());
+        let top = MARGIN + if picture.title.is_empty() { 0.0 } else { LINE + 8.0 };
         let foot = 10.0 + LINE * legend::lines(entries, width - 2.0 * MARGIN) as f64 + 8.0;
         let frame = picture.frame();
         let aspect = frame.height() / frame.width();
         let own = (panel_width * aspect.clamp(ASPECTS.0, ASPECTS.1)).round();
-        let height = picture.height.map_or_else(|| side(top + own + foot), side);
-        let panel_height = (height - top - foot).max(1.0);
+        // All but the panels themselves.
+        let around = top + down * headings + (down - 1.0) * GAP + foot;
+        let height = picture.height.map_or_else(|| side(around + down * own), side);
+        let panel_height = ((height - around) / down).max(1.0);
         let frame = frame.with_aspect(panel_width / panel_height);
-        let view = View { frame, left: MARGIN, top, scale: panel_width / frame.width() };
+        let view = View { frame, left: MARGIN, top: top + headings, scale: panel_width / frame.width() };
         let chosen = picture.frame.is_some();
-        Self { width, height, headings, panel_width, view, chosen, legend: top + panel_height + 10.0 + LINE / 2.0 }
+        let legend = top + down * (headings + panel_height) + (down - 1.0) * GAP + 10.0 + LINE / 2.0;
+        Self { width, height, headings, panel_width, columns, view, chosen, legend }
     }
 
-    fn left(&self, index: usize) -> f64 {
-        MARGIN + index as f64 * (self.panel_width + GAP)
+    /// Upper left corner of a panel, below its headings.
+    fn corner(&self, index: usize) -> (f64, f64) {
+        let (row, column) = (index / self.columns, index % self.columns);
+        let across = self.panel_width + GAP;
+        let down = self.headings + self.view.height() + GAP;
+        (self.view.left + column as f64 * across, self.view.top + row as f64 * down)
     }
 
     /// Pixels in a metre.
@@ -164,8 +179,9 @@ impl Layout {
 
     /// Draws one panel.
     fn panel(&self, index: usize, panel: &Panel, names: &Names<'_>, ink: &mut Ink) {
-        let view = View { left: self.left(index), ..self.view };
-        let (left, top) = (text_of(view.left), text_of(view.top));
+        let (left, top) = self.corner(index);
+        let view = View { left, top, ..self.view };
+        let (left, top) = (text_of(left), text_of(top));
         let (width, height) = (text_of(view.width()), text_of(view.height()));
         let rectangle = format!("x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"");
         let _ = writeln!(ink.svg, "<clipPath id=\"p{index}\"><rect {rectangle}/></clipPath>");

@@ -159,6 +159,24 @@ fn panels_stand_side_by_side_and_explain_each_mark_once() {
 }
 
 #[test]
+fn panels_of_the_same_size_stand_in_rows() {
+    // A 2 : 1 frame, 432 px wide: two columns of (432 − 2 · 16 − 20) / 2 = 190 px by 95; a heading of 20 above each row, 20 between rows.
+    let panel = |title: &str| Panel { title: title.to_owned(), ..Panel::default() };
+    let panels = ["a", "b", "c"].map(panel).to_vec();
+    let picture = Picture { panels, columns: Some(2), ..picture(Scene::new()) };
+    let svg = picture.svg();
+    let document = Document::parse(&svg).unwrap();
+    let number = |node: &roxmltree::Node<'_, '_>, name| node.attribute(name).unwrap().parse::<f64>().unwrap();
+    let borders = document.descendants().filter(|node| node.attribute("class") == Some("border"));
+    let places: Vec<[f64; 4]> =
+        borders.map(|node| ["x", "y", "width", "height"].map(|name| number(&node, name))).collect();
+    assert_eq!(places, [[16.0, 36.0, 190.0, 95.0], [226.0, 36.0, 190.0, 95.0], [16.0, 171.0, 190.0, 95.0]]);
+    let texts = document.descendants().filter(|node| node.has_tag_name("text"));
+    let third = texts.filter(|node| node.text() == Some("c")).map(|node| (number(&node, "x"), number(&node, "y")));
+    assert_eq!(third.collect::<Vec<_>>(), [(16.0, 163.0)], "a line of 20 above the panel, its letters on 12");
+}
+
+#[test]
 fn any_name_and_title_give_well_formed_xml() {
     let nasty = "<b>\u{0}\u{1b}[31m&amp; ]]> \" ' \u{ffff} 日本 \u{202e}";
     let mut scene = Scene::new();

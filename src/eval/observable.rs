@@ -56,7 +56,9 @@ impl Observable {
     /// The share of the observable surface within [`COVERED`] of some point; `None` where there is none to cover.
     pub fn coverage(&self, points: impl IntoIterator<Item = Point2<f64>>) -> Option<f64> {
         let (near, all) = (Nearness::new(points, COVERED), self.length());
-        let covered: f64 = self.pieces.iter().filter(|(middle, _)| near.any(*middle)).map(|(_, length)| length).sum();
+        let lengths = self.pieces.iter().filter(|(middle, _)| near.any(*middle)).map(|(_, length)| length);
+        // Not sum(): an empty one is −0.
+        let covered = lengths.fold(0.0, |sum, length| sum + length);
         (all > 0.0).then(|| covered / all)
     }
 }

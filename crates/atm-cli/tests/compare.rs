@@ -20,7 +20,7 @@ const EVAL: [&str; 7] =
 fn every_method_has_the_keys_of_eval_and_its_time() {
     let all = compare(&[&DOORWAY, &["--json"]]).exits(0).json();
     let methods: Vec<&String> = all.as_object().unwrap().keys().collect();
-    assert_eq!(methods.len(), 20, "{methods:?}");
+    assert_eq!(methods.len(), 22, "{methods:?}");
     for (name, method) in all.as_object().unwrap() {
         for key in EVAL.iter().chain(["seconds_per_reading", "best", "same_readings"].iter()) {
             assert!(method.get(key).is_some(), "{name}: no {key}");
@@ -53,6 +53,8 @@ fn atm_is_what_fuse_and_eval_say() {
         ("atm-two-center", vec!["--on-two", "center"]),
         ("atm-two-mean", vec!["--on-two", "mean"]),
         ("atm-latest", vec!["--emit", "latest"]),
+        ("consensus", vec!["--estimator", "consensus"]),
+        ("consensus-point-wall", vec!["--estimator", "consensus", "--keep", "point,wall"]),
     ] {
         let fused = fuse_sample(&options).exits(0);
         let expected = atm_fed(["eval", "-", "--world", "doorway", "--json"], fused.text()).exits(0).json();
@@ -114,10 +116,11 @@ fn pictures_and_maps_go_where_they_are_asked_for() {
     let (draw, map) = (scratch.name("pictures"), scratch.name("maps/here"));
     let more = ["--methods", "atm,mckerrow,himm,rcd", "--draw", &draw, "--map", &map];
     compare(&[&DOORWAY, &more]).exits(0);
-    for name in ["atm", "mckerrow", "himm", "side-by-side-1"] {
+    for name in ["atm", "mckerrow", "himm", "side-by-side"] {
         let picture = std::fs::read_to_string(format!("{draw}/{name}.svg")).expect(name);
         assert!(picture.starts_with("<svg") || picture.starts_with("<?xml"), "{name}");
     }
+    assert!(std::fs::read(format!("{draw}/side-by-side.png")).unwrap().starts_with(b"\x89PNG"));
     assert!(!std::path::Path::new(&format!("{draw}/rcd.svg")).exists(), "nothing to draw");
     let yaml = std::fs::read_to_string(format!("{map}/himm/map.yaml")).unwrap();
     assert!(yaml.starts_with("image: map.pgm\nresolution: 0.1\norigin: ["), "{yaml}");

@@ -6,13 +6,13 @@ use clap::Args;
 
 use super::{
     log::{Format, LogArgs},
-    values::{history, method, min_angle, parameter, positive_length, range_resolution},
+    values::{error_length, history, method, min_angle, parameter, positive_length, range_resolution},
 };
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Methods: atm as in the paper, and with its options: atm-median-single (only these kinds), atm-none-drop, atm-two-center, \
-atm-two-mean, atm-latest; centerline, interleave, intersections, mckerrow, rcd, tbf, directional-maximum; and the grids uniform, \
+atm-two-mean, atm-latest; consensus, which is atm fuse --estimator consensus, and consensus-point-wall; centerline, interleave, intersections, mckerrow, rcd, tbf, directional-maximum; and the grids uniform, \
 moravec-elfes, elfes, himm, voting, morphology, range-layer. What does not apply to a method is shown as -, and null in JSON. \
 Without --world the methods are compared with one another.")]
 pub struct Compare {
@@ -33,7 +33,7 @@ pub struct Compare {
     /// As JSON, in SI units
     #[arg(long)]
     pub json: bool,
-    /// Draw each method into this directory, and all of them side by side
+    /// Draw each method into this directory as SVG, and all of them side by side as SVG and PNG
     #[arg(long, value_name = "DIR")]
     pub draw: Option<String>,
     /// Write each grid into this directory, as map.pgm and map.yaml for ROS's map server, and as map.png
@@ -47,12 +47,15 @@ pub struct Compare {
     pub from: Option<Format>,
     #[command(flatten)]
     pub log: LogArgs,
-    /// H of the local map of atm
+    /// H of the local map of atm and consensus
     #[arg(long, value_name = "N", default_value = "10", value_parser = history)]
     pub history: usize,
     /// Crossings count from this angle on in atm [default: 30deg]
     #[arg(long, value_name = "A", value_parser = min_angle)]
     pub min_angle: Option<MinAngle<f64>>,
+    /// By how much ranges are wrong beyond their rounding, as a standard deviation, for consensus
+    #[arg(long, value_name = "L", value_parser = error_length, default_value = "0m")]
+    pub range_error: f64,
     /// Quantisation step of the ranges; beats the rig's [default: the rig's, else 1in]
     #[arg(long, value_name = "L", value_parser = range_resolution)]
     pub range_resolution: Option<RangeResolution<f64>>,

@@ -24,8 +24,12 @@ pub fn run(args: &Compare) -> Result<Outcome, Failure> {
     let world = args.world.as_deref().map(|name| World::load(name, &args.set)).transpose()?;
     let truth = args.truth.as_deref().map(Truth::read).transpose()?;
     let recording = record(args)?;
-    let options =
-        Options { history: args.history, min_angle: args.min_angle.unwrap_or(MinAngle::PAPER), cell: args.cell };
+    let options = Options {
+        history: args.history,
+        min_angle: args.min_angle.unwrap_or(MinAngle::PAPER),
+        range_error: args.range_error,
+        cell: args.cell,
+    };
     let names = if args.methods.is_empty() { Name::ALL.to_vec() } else { distinct(&args.methods) };
     let said: Vec<Said> = names.iter().map(|name| run_method(*name, &recording, &options)).collect::<Result<_, _>>()?;
     let assessed = match &world {

@@ -121,7 +121,7 @@ impl Inputs {
             args.panel.iter().map(|panel| self.panel(panel)).collect::<Result<_, _>>()?
         };
         let (width, height) = args.size.map_or((None, None), |(width, height)| (Some(width), height));
-        Ok(Picture { title: args.title.clone(), panels, frame: args.zoom, width, height })
+        Ok(Picture { title: args.title.clone(), panels, columns: None, frame: args.zoom, width, height })
     }
 
     /// One panel with what it names.

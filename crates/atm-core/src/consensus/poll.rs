@@ -87,11 +87,13 @@ impl<'a, T: Scalar> Poll<'a, T> {
     }
 
     /// The reading in a slot.
+    #[inline]
     pub fn witness(&self, slot: T) -> Option<Witness<T>> {
         Witness::of(self.partners.columns, slot.to_count() as usize)
     }
 
     /// The readings that may have a word, with their slots.
+    #[inline]
     pub fn witnesses(&self) -> impl Iterator<Item = (T, Witness<T>)> {
         self.near.iter().filter_map(|&slot| Some((slot, self.witness(slot)?)))
     }

@@ -57,6 +57,7 @@ const SURE_SHARE: u32 = 85;
 
 impl<T: Scalar> Witness<T> {
     /// The reading in `slot`; `None` where it can say nothing: too close, or invalid.
+    #[inline(always)]
     pub fn of(columns: &Columns<'_, T>, slot: usize) -> Option<Self> {
         let sight = columns.sight(slot)?;
         // The half beam from its half angle's tangent: cos = (1 − t²)/(1 + t²), sin = 2t/(1 + t²).
@@ -74,6 +75,7 @@ impl<T: Scalar> Witness<T> {
 
     /// Whether it could have a word on anything within `reach` of `middle`: its beam comes that near, and what it reports
     /// is no nearer than that.
+    #[inline]
     pub fn concerns(&self, middle: Point2<T>, reach: T) -> bool {
         let offset = middle - self.sensor;
         let aside = cross(self.axis, offset).magnitude();
@@ -83,6 +85,7 @@ impl<T: Scalar> Witness<T> {
     }
 
     /// Whether `offset` from its sensor lies in its beam, edges included.
+    #[inline]
     pub fn sees(&self, offset: Vector2<T>) -> bool {
         cross(self.axis, offset).magnitude() * self.cos <= dot(self.axis, offset) * self.sin
     }

@@ -12,9 +12,9 @@ use atm::{
 
 use crate::{Failure, args::Compare};
 
-/// Panels in one row of the pictures side by side.
-const PANELS: usize = 4;
-/// Width of these pictures, in pixels.
+/// Methods in one row of the sheet that has them all.
+const COLUMNS: usize = 4;
+/// Width of that sheet, in pixels.
 const WIDTH: f64 = 1800.0;
 
 /// Refuses directories that can't be had, before anything is computed.
@@ -51,11 +51,9 @@ fn draw(directory: &str, said: &[Said], recording: &Recording, world: Option<&Wo
         let picture = Picture { panels: vec![panel.clone()], frame, ..Picture::default() };
         save(&format!("{directory}/{}.svg", panel.title), picture.svg().as_bytes())?;
     }
-    for (row, panels) in panels.chunks(PANELS).enumerate() {
-        let picture = Picture { panels: panels.to_vec(), frame, width: Some(WIDTH), ..Picture::default() };
-        save(&format!("{directory}/side-by-side-{}.svg", row + 1), picture.svg().as_bytes())?;
-    }
-    Ok(())
+    let sheet = Picture { panels, columns: Some(COLUMNS), frame, width: Some(WIDTH), ..Picture::default() };
+    save(&format!("{directory}/side-by-side.svg"), sheet.svg().as_bytes())?;
+    save(&format!("{directory}/side-by-side.png"), &sheet.png(1.0)?)
 }
 
 fn map(directory: &str, said: &Said) -> Result<(), Failure> {
