@@ -240,7 +240,6 @@ impl<T: Scalar> Columns<'_, T> {
     /// A reading that reports nothing makes no arc. It is kept in the columns that an arc would take: +∞ as its radius, and
     /// as the arc's middle its boresight from the sensor, as long as the tangent of a quarter of its beam.
     #[inline(always)]
-    #[inline(always)]
     pub(crate) fn sight(&self, slot: usize) -> Option<Sight<T>> {
         let Arc { sensor, middle, radius, reach } = self.arc(slot);
         let axis = middle - sensor;
