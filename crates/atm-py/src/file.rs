@@ -1,8 +1,8 @@
 //! `atm.fuse_file`: from a log to a file, in one pass and bounded memory.
 
 use atm::{
-    core::{Beam, Bounds, MinAngle, RangeResolution, TransversalMedian},
-    job::{FuseJob, LogJob, MAX_GAP, McapWishes},
+    core::{Beam, Bounds, Kind, MinAngle, RangeResolution, Reflector, TransversalMedian},
+    job::{ConsensusJob, FuseJob, LogJob, MAX_GAP, McapWishes},
     log::{
         Input,
         csv::EmptyCell,
@@ -18,7 +18,9 @@ use pyo3::{exceptions::PyValueError, prelude::*, types::PyString};
 use crate::{
     argument::{self, named},
     fuse::{warn, warn_of_near},
-    job, options, raise,
+    job,
+    options::{self, Choice},
+    raise,
     rig::rig as rig_of,
 };
 
@@ -102,7 +104,8 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 ///     Recordings: how much later than others a message may come and still be put in order. None: 2 s.
 /// max_message : int, optional
 ///     Recordings: longest message that is read, in bytes. None: 64 MiB.
-/// history, max_age, max_travel, min_step, min_angle, range_resolution, emit, on_none, on_two, keep, drop_held
+/// history, max_age, max_travel, min_step, min_angle, range_resolution, emit, on_none, on_two, keep, drop_held, \
+/// held, estimator, confidence, range_error
 ///     As in :func:`fuse`.
 ///
 /// Quantities are SI numbers, or texts with a unit as on the command line: ``min_angle="30deg"``, ``max_travel="5m"``.
@@ -142,7 +145,8 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
                     range_resolution=None, fov=None, emit="settled", on_none="center", on_two="drop", keep=None,
                     drop_held=false, strict=false, from_=None, to=None, schema="foxglove", passthrough=false,
                     range_topics=None, pose_topic=None, fixed_frame=None,
-                    clock=None, reorder=None, max_message=None, progress=None))]
+                    clock=None, reorder=None, max_message=None, progress=None, held=None, estimator="atm", confidence=None,
+                    range_error=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse_file<'py>(
     py: Python<'py>,
@@ -180,6 +184,10 @@ pub fn fuse_file<'py>(
     reorder: Option<&Bound<'py, PyAny>>,
     max_message: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = named::held)] held: Option<&str>,
+    #[pyo3(from_py_with = named::estimator)] estimator: &str,
+    #[pyo3(from_py_with = named::confidence)] confidence: Option<f64>,
+    range_error: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if let Some(progress) = progress.filter(|progress| !progress.is_callable()) {
         return Err(raise::kind("progress", format_args!("expected a callable, found {}", argument::shown(progress))));
@@ -196,7 +204,7 @@ pub fn fuse_file<'py>(
     let empties = [("no-echo", EmptyCell::NoEcho), ("skip", EmptyCell::Skip)];
     let schemas = [("foxglove", SchemaKind::Foxglove), ("ros2", SchemaKind::Ros2)];
     let clocks = [("header", ClockChoice::Header), ("log", ClockChoice::Log), ("publish", ClockChoice::Publish)];
-    let job = FuseJob {
+    let mut job = FuseJob {
         log: LogJob {
             input: argument::path("input", input)?,
             opens: Input::open,
@@ -226,7 +234,7 @@ pub fn fuse_file<'py>(
         to: to.map(|word| argument::choice("to", word, &formats)).transpose()?,
         crossings: path("crossings", crossings)?,
         summary: path("summary", summary)?,
-        keep: options::keep(keep)?,
+        keep: None,
         consensus: None,
         schema: argument::choice("schema", schema, &schemas)?,
         passthrough,
@@ -246,7 +254,7 @@ pub fn fuse_file<'py>(
         emit: options::emit(emit)?,
         history,
         bounds: options::bounded(
-            Bounds::NONE.with_held_dropped(drop_held),
+            Bounds::NONE.with_held(options::held(held, drop_held)?),
             max_age,
             length("max_travel", max_travel)?,
             length("min_step", min_step)?,
@@ -258,6 +266,15 @@ pub fn fuse_file<'py>(
         },
         strict,
     };
+    let choice = Choice { estimator, confidence, range_error: length("range_error", range_error)? };
+    match choice.consensus(&settings.estimator)? {
+        None => job.keep = options::keep(keep, Kind::ALL, Kind::name)?,
+        Some(estimator) => {
+            let keep = options::keep(keep, Reflector::ALL, Reflector::name)?;
+            job.consensus = Some(ConsensusJob { estimator, keep });
+            job.check().map_err(|error| raise::library(&error))?;
+        }
+    }
     let progress = progress.map(|progress| progress.clone().unbind());
     let summary = job::run(py, &job, &settings, progress.as_ref())?;
     told(py, job.log.guesses_resolution(), &summary)

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use atm::{
-    core::Kind,
+    core::{Consensus, Kind, Reflector},
     error::{Error, Problem, Result},
     log::{Next, Row, Source},
     pipeline::{self, EchoSink, SensorModel, Settings},
@@ -15,11 +15,11 @@ use crate::{
     argument::named,
     column::Shape,
     interrupt::Watch,
-    options::{self, Options},
+    options::{self, Choice, Options},
     raise,
     readings::{Arguments, Given, Readings},
     rig::rig as rig_of,
-    table::{Crossings, Echoes},
+    table::{ConsensusEchoes, Crossings, Echoes},
 };
 
 /// Readings that are handed over at once, at most.
@@ -93,19 +93,24 @@ impl Source for ArraySource<'_, '_> {
     }
 }
 
-/// Runs the pipeline with the interpreter let go.
+/// Runs the pipeline with the interpreter let go, by the consensus where there is one.
 fn run(
     py: Python<'_>,
     readings: Readings<'_>,
     sensors: &[SensorModel],
     settings: &Settings,
+    consensus: Option<Consensus<f64>>,
     sink: &mut (impl EchoSink + Send),
 ) -> PyResult<Summary> {
     let mut watch = Watch::new();
     let (summary, result) = py.detach(|| {
         readings.check(None)?;
         let mut source = ArraySource { readings, next: 0, unwatched: 0, watch: &mut watch };
-        Ok::<_, PyErr>(pipeline::fuse(&mut source, None, sensors, settings, sink, &mut |_| {}))
+        let told = &mut |_| {};
+        Ok::<_, PyErr>(match consensus {
+            None => pipeline::fuse(&mut source, None, sensors, settings, sink, told),
+            Some(consensus) => pipeline::fuse_consensus(consensus, &mut source, None, sensors, settings, sink, told),
+        })
     })?;
     watch.into_result()?;
     match result {
@@ -173,11 +178,20 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 /// min_step : float, optional
 ///     Skip a reading whose sensor moved less than this since its last one in the local map, in metres.
 /// drop_held : bool
-///     Skip a reading equal to its sensor's previous one.
+///     Skip a reading equal to its sensor's previous one: ``held="drop"``.
 /// keep : sequence of str, optional
 ///     Only echoes of these kinds. None: all.
 /// sensor_index : array_like of int, shape (n,), optional
 ///     Places of the sensors in the rig, from 0, instead of ids; with ``sensor=None``.
+/// held : {"keep", "drop", "edges"}, optional
+///     What becomes of a reading equal to its sensor's previous one; "edges" keeps the first of a run of them and the last before
+///     a change. None: "keep".
+/// estimator : {"atm", "consensus"}
+///     Who says where on its arc an echo came from: the median of the crossings, or the points and walls that the readings agree on.
+/// confidence : float, optional
+///     Least confidence of a point or wall of the consensus, in [0, 1). None: 0.9.
+/// range_error : float, optional
+///     By how much ranges are wrong beyond their rounding, as a standard deviation in metres, for the consensus. None: 0.
 ///
 /// Returns
 /// -------
@@ -185,7 +199,9 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 ///     One row an echo, in the order in which they are reported, with the fields ``t`` (the reading's own, float64 or int64
 ///     as `t` was given), ``sensor``, ``x``, ``y`` (metres, the fixed frame), ``kind`` ("median", "single", "center", "near",
 ///     "pair"), ``range`` (metres), ``azimuth`` (radians from the boresight), ``crossings``, ``resolution`` (metres along the arc)
-///     and ``significance`` (equation (1)). ``pandas.DataFrame(...)`` and ``polars.from_numpy(...)`` take it as it is.
+///     and ``significance`` (equation (1)). By the consensus the kinds are "point", "wall" and "center", `crossings` counts the
+///     readings that agree, and there follow ``support``, ``against`` (counts), ``sigma_azimuth`` (radians), ``sigma_range`` (metres),
+///     ``normal_x`` and ``normal_y`` (nan but for walls). ``pandas.DataFrame(...)`` and ``polars.from_numpy(...)`` take it as it is.
 ///
 /// Raises
 /// ------
@@ -223,7 +239,8 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 #[pyfunction]
 #[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=10, min_angle=None, range_resolution=None,
                     field_of_view=None, emit="settled", on_none="center", on_two="drop", max_age=None, max_travel=None,
-                    min_step=None, drop_held=false, keep=None, sensor_index=None))]
+                    min_step=None, drop_held=false, keep=None, sensor_index=None, held=None, estimator="atm",
+                    confidence=None, range_error=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse<'py>(
     py: Python<'py>,
@@ -247,9 +264,12 @@ pub fn fuse<'py>(
     #[pyo3(from_py_with = named::drop_held)] drop_held: bool,
     keep: Option<&Bound<'py, PyAny>>,
     sensor_index: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = named::held)] held: Option<&str>,
+    #[pyo3(from_py_with = named::estimator)] estimator: &str,
+    #[pyo3(from_py_with = named::confidence)] confidence: Option<f64>,
+    #[pyo3(from_py_with = named::range_error)] range_error: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index };
-    let keep = options::keep(keep)?;
     let options = Options {
         history,
         min_angle,
@@ -262,11 +282,22 @@ pub fn fuse<'py>(
         max_travel,
         min_step,
         drop_held,
+        held,
+        choice: Choice { estimator, confidence, range_error },
     };
     let (rig, defaults, settings) = (rig_of(rig)?, options.defaults()?, options.settings()?);
+    let sensors = options::models(&rig, &defaults)?;
+    if let Some(consensus) = options.choice.consensus(&settings.estimator)? {
+        let keep = options::keep(keep, Reflector::ALL, Reflector::name)?;
+        let arguments = Arguments::new(&call, &rig, Shape::Array)?;
+        let mut echoes = ConsensusEchoes::new(&rig, arguments.clock(), keep);
+        run(py, arguments.readings(), &sensors, &settings, Some(consensus), &mut echoes)?;
+        return echoes.into_array(py);
+    }
+    let keep = options::keep(keep, Kind::ALL, Kind::name)?;
     let arguments = Arguments::new(&call, &rig, Shape::Array)?;
     let mut echoes = Echoes::new(&rig, arguments.clock(), keep, arguments.readings().len());
-    let summary = run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut echoes)?;
+    let summary = run(py, arguments.readings(), &sensors, &settings, None, &mut echoes)?;
     if defaults.guesses_resolution(&rig) {
         warn_of_near(py, &summary)?;
     }
@@ -341,10 +372,12 @@ pub fn crossings<'py>(
         max_travel,
         min_step,
         drop_held,
+        held: None,
+        choice: Choice::ATM,
     };
     let (rig, defaults, settings) = (rig_of(rig)?, options.defaults()?, options.settings()?);
     let arguments = Arguments::new(&call, &rig, Shape::Array)?;
     let mut crossings = Crossings::new(&rig, arguments.clock());
-    run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut crossings)?;
+    run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, None, &mut crossings)?;
     crossings.into_array(py)
 }

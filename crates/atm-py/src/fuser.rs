@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use atm::{
-    core::{Echo, Fuser, Rejected, Sink},
+    core::{Consensus, ConsensusEcho, Echo, Fuser, Rejected, Sink},
     log::Row,
     pipeline::{self, Emit, SensorModel},
     rig::Rig,
@@ -15,7 +15,7 @@ use crate::{
     argument::{self, named},
     column::Shape,
     interrupt::Watch,
-    options::{self, Options},
+    options::{self, Choice, Options},
     raise,
     readings::{Arguments, Given, Readings},
     rig::rig as rig_of,
@@ -34,9 +34,39 @@ pub enum Time {
     Nanoseconds(i64),
 }
 
+/// An echo of either estimator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum AnyEcho {
+    Median(Echo<f64>),
+    Consensus(ConsensusEcho<f64>),
+}
+
+/// Takes the same field of either.
+macro_rules! of_either {
+    ($echo:expr, $name:ident => $value:expr) => {
+        match &$echo {
+            AnyEcho::Median($name) => $value,
+            AnyEcho::Consensus($name) => $value,
+        }
+    };
+}
+
+impl AnyEcho {
+    const fn consensus(&self) -> Option<&ConsensusEcho<f64>> {
+        match self {
+            Self::Median(_) => None,
+            Self::Consensus(echo) => Some(echo),
+        }
+    }
+
+    fn normal(&self) -> Option<[f64; 2]> {
+        self.consensus()?.normal.map(|normal| [normal.x, normal.y])
+    }
+}
+
 /// One echo: a point on one arc, with how it was found.
 ///
-/// Attributes as the fields of :func:`fuse`. Never changed; two echoes are equal where all of their fields are.
+/// Attributes as the fields of :func:`fuse`; what only the consensus says is None in echoes of the median. Never changed; two echoes are equal where all of their fields are.
 ///
 /// Examples
 /// --------
@@ -47,7 +77,7 @@ pub enum Time {
 #[pyclass(frozen, module = "atm", name = "Echo")]
 #[derive(Debug)]
 pub struct PyEcho {
-    echo: Echo<f64>,
+    echo: AnyEcho,
     clock: Clock,
     rig: Arc<Rig>,
 }
@@ -58,63 +88,103 @@ impl PyEcho {
     #[getter]
     fn t(&self) -> Time {
         match self.clock {
-            Clock::Seconds => Time::Seconds(seconds(self.echo.t)),
-            Clock::Nanoseconds => Time::Nanoseconds(self.echo.t),
+            Clock::Seconds => Time::Seconds(seconds(of_either!(self.echo, echo => echo.t))),
+            Clock::Nanoseconds => Time::Nanoseconds(of_either!(self.echo, echo => echo.t)),
         }
     }
 
     /// The sensor's id.
     #[getter]
     fn sensor(&self) -> &str {
-        self.rig.sensors().get(usize::from(self.echo.sensor)).map_or("", |sensor| sensor.id())
+        let sensor = of_either!(self.echo, echo => echo.sensor);
+        self.rig.sensors().get(usize::from(sensor)).map_or("", |sensor| sensor.id())
     }
 
     /// Where it is in the fixed frame, in metres.
     #[getter]
     fn x(&self) -> f64 {
-        self.echo.position.x
+        of_either!(self.echo, echo => echo.position.x)
     }
 
     /// Where it is in the fixed frame, in metres.
     #[getter]
     fn y(&self) -> f64 {
-        self.echo.position.y
+        of_either!(self.echo, echo => echo.position.y)
     }
 
-    /// How it was found: "median", "single", "center", "near" or "pair".
+    /// How it was found: "median", "single", "center", "near" or "pair"; by the consensus "point", "wall" or "center".
     #[getter]
     fn kind(&self) -> &'static str {
-        self.echo.kind.name()
+        of_either!(self.echo, echo => echo.kind.name())
     }
 
     /// The reading, in metres.
     #[getter]
     fn range(&self) -> f64 {
-        self.echo.range
+        of_either!(self.echo, echo => echo.range)
     }
 
     /// Its direction from the boresight, in radians, within half the beam (Sec. III-B).
     #[getter]
     fn azimuth(&self) -> f64 {
-        self.echo.azimuth()
+        of_either!(self.echo, echo => echo.azimuth())
     }
 
-    /// Transversal crossings on its arc.
+    /// Transversal crossings on its arc; by the consensus the readings that agree with it.
     #[getter]
     fn crossings(&self) -> u32 {
-        self.echo.crossings
+        match &self.echo {
+            AnyEcho::Median(echo) => echo.crossings,
+            AnyEcho::Consensus(echo) => echo.support,
+        }
     }
 
     /// Length along the arc in which it lies, in metres (Sec. IV-B).
     #[getter]
     fn resolution(&self) -> f64 {
-        self.echo.resolution
+        of_either!(self.echo, echo => echo.resolution)
     }
 
-    /// Equation (1): the chance that its crossings fell there by accident; 1 for center and near.
+    /// Equation (1): the chance that its crossings fell there by accident, or 1 less the consensus's confidence; 1 for center and near.
     #[getter]
     fn significance(&self) -> f64 {
-        self.echo.significance()
+        of_either!(self.echo, echo => echo.significance())
+    }
+
+    /// Readings that agree with it, by the consensus.
+    #[getter]
+    fn support(&self) -> Option<u32> {
+        self.echo.consensus().map(|echo| echo.support)
+    }
+
+    /// Readings that look there and report clearly farther, or nothing, by the consensus.
+    #[getter]
+    fn against(&self) -> Option<u32> {
+        self.echo.consensus().map(|echo| echo.against)
+    }
+
+    /// Standard deviation of the azimuth, in radians, by the consensus.
+    #[getter]
+    fn sigma_azimuth(&self) -> Option<f64> {
+        self.echo.consensus().map(|echo| echo.sigma_azimuth)
+    }
+
+    /// Standard deviation of the distance from the sensor, in metres, by the consensus.
+    #[getter]
+    fn sigma_range(&self) -> Option<f64> {
+        self.echo.consensus().map(|echo| echo.sigma_range)
+    }
+
+    /// A wall's normal, a unit vector towards the sensor; None but for walls.
+    #[getter]
+    fn normal_x(&self) -> Option<f64> {
+        self.echo.normal().map(|[x, _]| x)
+    }
+
+    /// A wall's normal, a unit vector towards the sensor; None but for walls.
+    #[getter]
+    fn normal_y(&self) -> Option<f64> {
+        self.echo.normal().map(|[_, y]| y)
     }
 
     fn __repr__(&self) -> String {
@@ -124,7 +194,7 @@ impl PyEcho {
         };
         format!(
             "Echo(t={t}, sensor='{}', x={:?}, y={:?}, kind='{}', range={:?}, azimuth={:?}, crossings={}, resolution={:?}, \
-             significance={:?})",
+             significance={:?}{})",
             self.sensor(),
             self.x(),
             self.y(),
@@ -134,6 +204,7 @@ impl PyEcho {
             self.crossings(),
             self.resolution(),
             self.significance(),
+            self.words_of_the_consensus(),
         )
     }
 
@@ -146,37 +217,64 @@ impl PyEcho {
     }
 }
 
-/// The library's fuser in either mode.
+impl PyEcho {
+    /// What the consensus says besides, for the representation.
+    fn words_of_the_consensus(&self) -> String {
+        let Some(echo) = self.echo.consensus() else { return String::new() };
+        let normal = self.echo.normal().map(|[x, y]| format!(", normal_x={x:?}, normal_y={y:?}")).unwrap_or_default();
+        format!(
+            ", support={}, against={}, sigma_azimuth={:?}, sigma_range={:?}{normal}",
+            echo.support, echo.against, echo.sigma_azimuth, echo.sigma_range
+        )
+    }
+}
+
+/// Echoes as they come.
+struct Found<'a>(&'a mut Vec<AnyEcho>);
+
+impl Sink<f64, Echo<f64>> for Found<'_> {
+    fn echo(&mut self, echo: &Echo<f64>) {
+        self.0.push(AnyEcho::Median(*echo));
+    }
+}
+
+impl Sink<f64, ConsensusEcho<f64>> for Found<'_> {
+    fn echo(&mut self, echo: &ConsensusEcho<f64>) {
+        self.0.push(AnyEcho::Consensus(*echo));
+    }
+}
+
+/// The library's fuser, of either estimator in either mode.
 enum Engine {
     Latest(Fuser<f64, LatestSlots<f64>>),
     Settled(Fuser<f64, SettledSlots<f64>>),
+    LatestConsensus(Fuser<f64, LatestSlots<f64>, Consensus<f64>>),
+    SettledConsensus(Fuser<f64, SettledSlots<f64>, Consensus<f64>>),
+}
+
+/// The same call of any of them.
+macro_rules! of_any {
+    ($engine:expr, $fuser:ident => $call:expr) => {
+        match $engine {
+            Engine::Latest($fuser) => $call,
+            Engine::Settled($fuser) => $call,
+            Engine::LatestConsensus($fuser) => $call,
+            Engine::SettledConsensus($fuser) => $call,
+        }
+    };
 }
 
 impl Engine {
-    fn push(
-        &mut self,
-        reading: &atm::core::Reading<f64>,
-        sink: &mut impl Sink<f64, Echo<f64>>,
-    ) -> Result<(), Rejected> {
-        match self {
-            Self::Latest(fuser) => fuser.push(reading, sink),
-            Self::Settled(fuser) => fuser.push(reading, sink),
-        }
-        .map(|_| ())
+    fn push(&mut self, reading: &atm::core::Reading<f64>, mut found: Found<'_>) -> Result<(), Rejected> {
+        of_any!(self, fuser => fuser.push(reading, &mut found)).map(|_| ())
     }
 
-    fn finish(&mut self, sink: &mut impl Sink<f64, Echo<f64>>) {
-        match self {
-            Self::Latest(fuser) => fuser.finish(sink),
-            Self::Settled(fuser) => fuser.finish(sink),
-        }
+    fn finish(&mut self, mut found: Found<'_>) {
+        of_any!(self, fuser => fuser.finish(&mut found));
     }
 
-    fn snapshot(&mut self, sink: &mut impl Sink<f64, Echo<f64>>) {
-        match self {
-            Self::Latest(fuser) => fuser.snapshot(sink),
-            Self::Settled(fuser) => fuser.snapshot(sink),
-        }
+    fn snapshot(&mut self, mut found: Found<'_>) {
+        of_any!(self, fuser => fuser.snapshot(&mut found));
     }
 }
 
@@ -197,14 +295,14 @@ impl State {
         readings: &Readings<'_>,
         span: std::ops::Range<usize>,
         sensors: &[SensorModel],
-        sink: &mut impl Sink<f64, Echo<f64>>,
+        echoes: &mut Vec<AnyEcho>,
     ) -> PyResult<()> {
         for index in span {
             self.row.t = readings.time(index);
             self.row.readings.clear();
             self.row.readings.push(readings.measured(index));
             for reading in pipeline::readings(&self.row, readings.pose(index), sensors) {
-                let pushed = self.engine.push(&reading, sink);
+                let pushed = self.engine.push(&reading, Found(echoes));
                 pushed.map_err(|rejected| match rejected {
                     Rejected::TimeBackwards => readings.fault("t", index, rejected.to_string()),
                     // Everything else was checked: a finite pose that overflows where the sensor sits.
@@ -223,7 +321,8 @@ impl State {
 /// ----------
 /// rig : Rig or str or os.PathLike
 ///     The sensors: a :class:`Rig`, a built-in rig's name, or a TOML file.
-/// history, min_angle, range_resolution, field_of_view, emit, on_none, on_two, max_age, max_travel, min_step, drop_held
+/// history, min_angle, range_resolution, field_of_view, emit, on_none, on_two, max_age, max_travel, min_step, drop_held, \
+/// held, estimator, confidence, range_error
 ///     As in :func:`fuse`.
 ///
 /// Raises
@@ -257,13 +356,13 @@ impl PyFuser {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn list<'py>(&self, py: Python<'py>, echoes: Vec<Echo<f64>>, clock: Clock) -> PyResult<Bound<'py, PyList>> {
+    fn list<'py>(&self, py: Python<'py>, echoes: Vec<AnyEcho>, clock: Clock) -> PyResult<Bound<'py, PyList>> {
         let echoes = echoes.into_iter().map(|echo| PyEcho { echo, clock, rig: Arc::clone(&self.rig) });
         PyList::new(py, echoes.map(|echo| Py::new(py, echo)).collect::<PyResult<Vec<_>>>()?)
     }
 
     /// Takes all readings in, batch by batch, so that Ctrl-C comes through.
-    fn take(&self, readings: &Readings<'_>, clock: Clock) -> PyResult<Vec<Echo<f64>>> {
+    fn take(&self, readings: &Readings<'_>, clock: Clock) -> PyResult<Vec<AnyEcho>> {
         let mut echoes = Vec::new();
         let mut watch = Watch::new();
         {
@@ -281,7 +380,7 @@ impl PyFuser {
         let mut first = 0;
         while first < readings.len() && !watch.is_over(|_| Ok(())) {
             let end = readings.len().min(first + BATCH);
-            self.lock().take(readings, first..end, &self.sensors, &mut |echo: &Echo<f64>| echoes.push(*echo))?;
+            self.lock().take(readings, first..end, &self.sensors, &mut echoes)?;
             first = end;
         }
         watch.into_result()?;
@@ -293,7 +392,8 @@ impl PyFuser {
 impl PyFuser {
     #[new]
     #[pyo3(signature = (rig, history=10, *, min_angle=None, range_resolution=None, field_of_view=None, emit="settled",
-                        on_none="center", on_two="drop", max_age=None, max_travel=None, min_step=None, drop_held=false))]
+                        on_none="center", on_two="drop", max_age=None, max_travel=None, min_step=None, drop_held=false,
+                        held=None, estimator="atm", confidence=None, range_error=None))]
     #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
     fn new(
         rig: &Bound<'_, PyAny>,
@@ -308,6 +408,10 @@ impl PyFuser {
         #[pyo3(from_py_with = named::max_travel)] max_travel: Option<f64>,
         #[pyo3(from_py_with = named::min_step)] min_step: Option<f64>,
         #[pyo3(from_py_with = named::drop_held)] drop_held: bool,
+        #[pyo3(from_py_with = named::held)] held: Option<&str>,
+        #[pyo3(from_py_with = named::estimator)] estimator: &str,
+        #[pyo3(from_py_with = named::confidence)] confidence: Option<f64>,
+        #[pyo3(from_py_with = named::range_error)] range_error: Option<f64>,
     ) -> PyResult<Self> {
         let rig = rig_of(rig)?;
         let options = Options {
@@ -322,18 +426,27 @@ impl PyFuser {
             max_travel,
             min_step,
             drop_held,
+            held,
+            choice: Choice { estimator, confidence, range_error },
         };
         let (settings, sensors) = (options.settings()?, options::models(&rig, &options.defaults()?)?);
         let too_large = |error| raise::value("history", error);
-        let (estimator, bounds) = (settings.estimator, settings.bounds);
+        let (median, bounds, count) = (settings.estimator, settings.bounds, sensors.len());
+        let consensus = options.choice.consensus(&median)?;
         let engine = match settings.emit {
             Emit::Latest => {
-                let storage = LatestSlots::new(sensors.len(), history).map_err(too_large)?;
-                Engine::Latest(Fuser::latest(estimator, bounds, storage))
+                let storage = LatestSlots::new(count, history).map_err(too_large)?;
+                match consensus {
+                    None => Engine::Latest(Fuser::latest(median, bounds, storage)),
+                    Some(consensus) => Engine::LatestConsensus(Fuser::latest(consensus, bounds, storage)),
+                }
             }
             Emit::Settled => {
-                let storage = SettledSlots::new(sensors.len(), history).map_err(too_large)?;
-                Engine::Settled(Fuser::settled(estimator, bounds, storage))
+                let storage = SettledSlots::new(count, history).map_err(too_large)?;
+                match consensus {
+                    None => Engine::Settled(Fuser::settled(median, bounds, storage)),
+                    Some(consensus) => Engine::SettledConsensus(Fuser::settled(consensus, bounds, storage)),
+                }
             }
         };
         let state = State { engine, latest: None, clock: None, row: Row::default() };
@@ -392,7 +505,7 @@ impl PyFuser {
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let (echoes, clock) = py.detach(|| {
             let (mut state, mut echoes) = (self.lock(), Vec::new());
-            state.engine.finish(&mut |echo: &Echo<f64>| echoes.push(*echo));
+            state.engine.finish(Found(&mut echoes));
             state.latest = None;
             (echoes, state.clock.take())
         });
@@ -407,7 +520,7 @@ impl PyFuser {
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let (echoes, clock) = py.detach(|| {
             let (mut state, mut echoes) = (self.lock(), Vec::new());
-            state.engine.snapshot(&mut |echo: &Echo<f64>| echoes.push(*echo));
+            state.engine.snapshot(Found(&mut echoes));
             (echoes, state.clock)
         });
         self.list(py, echoes, clock.unwrap_or(Clock::Seconds))

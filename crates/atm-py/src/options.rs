@@ -1,7 +1,7 @@
 //! How to fuse, as Python says it.
 
 use atm::{
-    core::{Beam, Bounds, Kind, MinAngle, OnNone, OnTwo, RangeResolution, TransversalMedian, Travel},
+    core::{Beam, Bounds, Consensus, Held, MinAngle, OnNone, OnTwo, RangeResolution, TransversalMedian, Travel},
     pipeline::{Defaults, Emit, SensorModel, Settings},
     rig::Rig,
     storage::LatestSlots,
@@ -23,6 +23,46 @@ pub struct Options<'a> {
     pub max_travel: Option<f64>,
     pub min_step: Option<f64>,
     pub drop_held: bool,
+    pub held: Option<&'a str>,
+    pub choice: Choice<'a>,
+}
+
+/// The estimator, and what only the consensus asks for.
+#[derive(Clone, Copy)]
+pub struct Choice<'a> {
+    pub estimator: &'a str,
+    pub confidence: Option<f64>,
+    pub range_error: Option<f64>,
+}
+
+impl Choice<'_> {
+    /// The median.
+    pub const ATM: Self = Self { estimator: "atm", confidence: None, range_error: None };
+
+    /// The consensus, where it takes the place of the median of the settings.
+    pub fn consensus(&self, median: &TransversalMedian<f64>) -> PyResult<Option<Consensus<f64>>> {
+        let chosen = argument::choice("estimator", self.estimator, &[("atm", false), ("consensus", true)])?;
+        let options = [
+            (chosen && median.on_none != OnNone::Center, "on_none"),
+            (chosen && median.on_two != OnTwo::Drop, "on_two"),
+            (!chosen && self.confidence.is_some(), "confidence"),
+            (!chosen && self.range_error.is_some(), "range_error"),
+        ];
+        if let Some((_, name)) = options.into_iter().find(|(given, _)| *given) {
+            return Err(raise::value(name, format_args!("says nothing to the estimator {}", self.estimator)));
+        }
+        if !chosen {
+            return Ok(None);
+        }
+        let mut consensus = Consensus::new(median.min_angle);
+        if let Some(confidence) = self.confidence {
+            let sure = consensus.with_min_confidence(confidence);
+            consensus = sure.map_err(|error| raise::value("confidence", format_args!("{confidence}: {error}")))?;
+        }
+        let metres = self.range_error.unwrap_or(0.0);
+        let told = consensus.with_range_error(metres);
+        told.map(Some).map_err(|error| raise::value("range_error", format_args!("{metres} m: {error}")))
+    }
 }
 
 impl Options<'_> {
@@ -58,8 +98,19 @@ impl Options<'_> {
     }
 
     fn bounds(&self) -> PyResult<Bounds<f64>> {
-        let bounds = Bounds::NONE.with_held_dropped(self.drop_held);
+        let bounds = Bounds::NONE.with_held(held(self.held, self.drop_held)?);
         bounded(bounds, self.max_age.map(|age| max_age("max_age", age)).transpose()?, self.max_travel, self.min_step)
+    }
+}
+
+/// What becomes of a reading equal to its sensor's previous one.
+pub fn held(held: Option<&str>, drop_held: bool) -> PyResult<Held> {
+    let choices = [("keep", Held::Keep), ("drop", Held::Drop), ("edges", Held::Edges)];
+    match held {
+        None if drop_held => Ok(Held::Drop),
+        None => Ok(Held::Keep),
+        Some(_) if drop_held => Err(raise::value("held", "goes without drop_held")),
+        Some(word) => argument::choice("held", word, &choices),
     }
 }
 
@@ -114,8 +165,12 @@ pub fn on_two(word: &str) -> PyResult<OnTwo> {
     argument::choice("on_two", word, &[("drop", OnTwo::Drop), ("center", OnTwo::Center), ("mean", OnTwo::Mean)])
 }
 
-/// The kinds to keep: a list of words, or one text with commas between them.
-pub fn keep(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<Kind>>> {
+/// The kinds of one estimator to keep: a list of words, or one text with commas between them.
+pub fn keep<K: Copy, const N: usize>(
+    value: Option<&Bound<'_, PyAny>>,
+    all: [K; N],
+    name: fn(K) -> &'static str,
+) -> PyResult<Option<Vec<K>>> {
     let Some(value) = value else { return Ok(None) };
     let words: Vec<String> = if value.is_instance_of::<PyString>() {
         value.extract::<String>()?.split(',').map(|word| word.trim().to_owned()).collect()
@@ -130,7 +185,7 @@ pub fn keep(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<Kind>>> {
         };
         items.enumerate().map(word).collect::<PyResult<_>>()?
     };
-    let kinds = Kind::ALL.map(|kind| (kind.name(), kind));
+    let kinds = all.map(|kind| (name(kind), kind));
     words.iter().map(|word| argument::choice("keep", word, &kinds)).collect::<PyResult<_>>().map(Some)
 }
 

@@ -3,7 +3,7 @@
 use std::iter;
 
 use atm::{
-    core::{ArcCrossing, Echo, Kind},
+    core::{ArcCrossing, ConsensusEcho, Echo, Kind, Reflector},
     error::Result,
     pipeline::EchoSink,
     rig::Rig,
@@ -18,6 +18,30 @@ const KIND_WIDTH: usize = 6;
 
 /// Numbers in a row of echoes: time, position, range, azimuth, count, resolution, significance.
 const ECHO_NUMBERS: usize = 8;
+
+/// The columns of a table of echoes.
+const ECHO_COLUMNS: [(&str, Type); 10] = [
+    ("t", Type::Time),
+    ("sensor", Type::Id),
+    ("x", Type::Float),
+    ("y", Type::Float),
+    ("kind", Type::Kind),
+    ("range", Type::Float),
+    ("azimuth", Type::Float),
+    ("crossings", Type::Count),
+    ("resolution", Type::Float),
+    ("significance", Type::Float),
+];
+
+/// And what follows them in one of the consensus's echoes.
+const CONSENSUS_COLUMNS: [(&str, Type); 6] = [
+    ("support", Type::Count),
+    ("against", Type::Count),
+    ("sigma_azimuth", Type::Float),
+    ("sigma_range", Type::Float),
+    ("normal_x", Type::Float),
+    ("normal_y", Type::Float),
+];
 
 /// A text as numpy's `U` holds it: four bytes a character, zeros behind.
 fn wide(text: &str, width: usize) -> Vec<u8> {
@@ -62,6 +86,11 @@ impl Rows {
     }
 
     #[inline]
+    fn count(&mut self, value: u32) {
+        self.bytes.extend_from_slice(&value.to_ne_bytes());
+    }
+
+    #[inline]
     fn float(&mut self, value: f64) {
         self.bytes.extend_from_slice(&value.to_ne_bytes());
     }
@@ -97,7 +126,7 @@ enum Type {
     Count,
 }
 
-/// The echoes of a run.
+/// The echoes of a run by the median.
 pub struct Echoes {
     rows: Rows,
     kinds: [Vec<u8>; Kind::ALL.len()],
@@ -118,19 +147,7 @@ impl Echoes {
 
     /// The table as numpy has it.
     pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        let columns = [
-            ("t", Type::Time),
-            ("sensor", Type::Id),
-            ("x", Type::Float),
-            ("y", Type::Float),
-            ("kind", Type::Kind),
-            ("range", Type::Float),
-            ("azimuth", Type::Float),
-            ("crossings", Type::Count),
-            ("resolution", Type::Float),
-            ("significance", Type::Float),
-        ];
-        self.rows.into_array(py, &columns)
+        self.rows.into_array(py, &ECHO_COLUMNS)
     }
 }
 
@@ -149,9 +166,67 @@ impl EchoSink for Echoes {
         }
         rows.float(echo.range);
         rows.float(echo.azimuth());
-        rows.bytes.extend_from_slice(&echo.crossings.to_ne_bytes());
+        rows.count(echo.crossings);
         rows.float(echo.resolution);
         rows.float(echo.significance());
+        Ok(true)
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// The echoes of a run by the consensus.
+pub struct ConsensusEchoes {
+    rows: Rows,
+    kinds: [Vec<u8>; Reflector::ALL.len()],
+    /// Kinds to keep; all where there are none given.
+    keep: Option<Vec<Reflector>>,
+}
+
+impl ConsensusEchoes {
+    /// An empty table.
+    pub fn new(rig: &Rig, clock: Clock, keep: Option<Vec<Reflector>>) -> Self {
+        Self { rows: Rows::new(rig, clock), kinds: Reflector::ALL.map(|kind| wide(kind.name(), KIND_WIDTH)), keep }
+    }
+
+    /// The table as numpy has it.
+    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let columns: Vec<(&str, Type)> = ECHO_COLUMNS.into_iter().chain(CONSENSUS_COLUMNS).collect();
+        self.rows.into_array(py, &columns)
+    }
+}
+
+impl EchoSink for ConsensusEchoes {
+    fn echo(&mut self, _echo: &Echo<f64>) -> Result<bool> {
+        Ok(false)
+    }
+
+    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
+        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
+            return Ok(false);
+        }
+        let rows = &mut self.rows;
+        rows.time(echo.t);
+        rows.id(echo.sensor);
+        rows.float(echo.position.x);
+        rows.float(echo.position.y);
+        if let Some((_, kind)) = Reflector::ALL.into_iter().zip(&self.kinds).find(|(kind, _)| *kind == echo.kind) {
+            rows.bytes.extend_from_slice(kind);
+        }
+        rows.float(echo.range);
+        rows.float(echo.azimuth());
+        rows.count(echo.support);
+        rows.float(echo.resolution);
+        rows.float(echo.significance());
+        rows.count(echo.support);
+        rows.count(echo.against);
+        rows.float(echo.sigma_azimuth);
+        rows.float(echo.sigma_range);
+        for component in echo.normal.map_or([f64::NAN; 2], |normal| [normal.x, normal.y]) {
+            rows.float(component);
+        }
         Ok(true)
     }
 

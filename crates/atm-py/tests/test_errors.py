@@ -194,6 +194,13 @@ DOMAINS: list[tuple[str, Any]] = [
     ("keep", ["medium"]),
     ("keep", 3),
     ("drop_held", "no"),
+    ("held", "once"),
+    ("held", 3),
+    ("estimator", "median"),
+    ("estimator", None),
+    ("confidence", 0.5),
+    ("range_error", 0.01),
+    ("confidence", "much"),
 ]
 
 
@@ -204,6 +211,24 @@ def test_options_out_of_their_domain(name: str, value: Any) -> None:
     if name != "keep":
         message = refusal(REFUSED, lambda: atm.Fuser("nomad200", **{name: value}))
         assert_names(message, name)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("confidence", 1.0), ("confidence", -0.1), ("confidence", np.nan), ("range_error", -1.0), ("range_error", np.inf),
+     ("on_none", "drop"), ("on_two", "mean"), ("keep", "median")],
+    ids=str,
+)
+def test_options_of_the_consensus_out_of_their_domain(name: str, value: Any) -> None:
+    options = {"estimator": "consensus", name: value}
+    assert_names(refusal(REFUSED, lambda: atm.fuse(**readings(), rig="nomad200", **options)), name)
+    if name != "keep":
+        assert_names(refusal(REFUSED, lambda: atm.Fuser("nomad200", **options)), name)
+
+
+def test_held_said_twice() -> None:
+    twice: dict[str, Any] = {"held": "keep", "drop_held": True}
+    assert_names(refusal(REFUSED, lambda: atm.fuse(**readings(), rig="nomad200", **twice)), "held")
 
 
 def test_options_that_do_not_exist() -> None:

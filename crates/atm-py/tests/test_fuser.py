@@ -43,6 +43,24 @@ def test_one_reading_at_a_time(doorway: Readings, emit: str) -> None:
     assert rows(found) == atm.fuse(*doorway, rig="nomad200", emit=emit).tolist()
 
 
+def test_consensus_one_reading_at_a_time(doorway: Readings) -> None:
+    fuser = atm.Fuser("nomad200", estimator="consensus")
+    found = []
+    for reading in zip(*doorway):
+        found += fuser.push(*reading)
+    found += fuser.finish()
+    whole = atm.fuse(*doorway, rig="nomad200", estimator="consensus")
+    assert rows(found) == whole[list(FIELDS)].tolist()
+    # None stands where the array has nan.
+    for name in ("support", "against", "sigma_azimuth", "sigma_range", "normal_x", "normal_y"):
+        own = np.array([getattr(echo, name) for echo in found], dtype=float)
+        np.testing.assert_array_equal(own, whole[name].astype(float), err_msg=name)
+    assert {"point", "wall"} & set(whole["kind"].tolist())
+    walls = [echo for echo in found if echo.kind == "wall"]
+    assert all(abs(np.hypot(echo.normal_x or 0.0, echo.normal_y or 0.0) - 1.0) < 1e-12 for echo in walls)
+    assert "sigma_azimuth=" in repr(found[0]) and "sigma" not in repr(atm.Fuser("nomad200", emit="latest").push(0, "0", 1, 0, 0, 0)[0])
+
+
 def test_plain_numbers(doorway: Readings) -> None:
     """Python's own numbers, and ids as str."""
     fuser = atm.Fuser("nomad200", emit="latest")

@@ -19,13 +19,15 @@ from reference import Method
 
 FIELDS = "t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance".split(",")
 REALS = ("x", "y", "range", "azimuth", "resolution", "significance")
+MORE = "support,against,sigma_azimuth,sigma_range,normal_x,normal_y".split(",")
 
 
 def assert_same(echoes: np.ndarray, table: Path) -> int:
     """Every field of every row, floats by their bits; gives the number of rows."""
     with table.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert list(echoes.dtype.names) == FIELDS
+    more = MORE if "support" in (echoes.dtype.names or ()) else []
+    assert list(echoes.dtype.names) == FIELDS + more
     assert len(echoes) == len(rows)
     nanoseconds = [int(Decimal(row["t"]) * 10**9) for row in rows]
     if echoes["t"].dtype == np.int64:
@@ -36,8 +38,11 @@ def assert_same(echoes: np.ndarray, table: Path) -> int:
     assert echoes["sensor"].tolist() == [row["sensor"] for row in rows]
     assert echoes["kind"].tolist() == [row["kind"] for row in rows]
     assert echoes["crossings"].tolist() == [int(row["crossings"]) for row in rows]
-    for name in REALS:
-        written = np.array([float(row[name]) for row in rows], dtype=np.float64)
+    for name in more[:2]:
+        assert echoes[name].tolist() == [int(row[name]) for row in rows]
+    for name in (*REALS, *more[2:]):
+        # The normal of what is no wall is empty.
+        written = np.array([float(row[name] or "nan") for row in rows], dtype=np.float64)
         bits = np.ascontiguousarray(echoes[name], dtype=np.float64)
         np.testing.assert_array_equal(bits.view(np.uint64), written.view(np.uint64), err_msg=name)
     return len(rows)
@@ -66,6 +71,12 @@ CHOICES: list[tuple[list[str], dict[str, Any]]] = [
     (["--min-step", "0.3m"], {"min_step": 0.3}),
     (["--drop-held"], {"drop_held": True}),
     (["--keep", "median,single"], {"keep": ["median", "single"]}),
+    (["--held", "edges"], {"held": "edges"}),
+    (["--estimator", "consensus"], {"estimator": "consensus"}),
+    (
+        ["--emit", "latest", "--estimator", "consensus", "--confidence", "0.5", "--range-error", "1cm", "--keep", "point,wall"],
+        {"emit": "latest", "estimator": "consensus", "confidence": 0.5, "range_error": 0.01, "keep": "point,wall"},
+    ),
 ]
 
 

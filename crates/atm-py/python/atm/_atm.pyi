@@ -23,7 +23,9 @@ __all__ = [
 __version__: str
 
 _Emit = Literal["settled", "latest"]
-_Kind = Literal["median", "single", "center", "near", "pair"]
+_Kind = Literal["median", "single", "center", "near", "pair", "point", "wall"]
+_Held = Literal["keep", "drop", "edges"]
+_Estimator = Literal["atm", "consensus"]
 _OnNone = Literal["center", "drop"]
 _OnTwo = Literal["drop", "center", "mean"]
 _Format = Literal["csv", "mcap"]
@@ -131,6 +133,18 @@ class Echo:
     def resolution(self) -> float: ...
     @property
     def significance(self) -> float: ...
+    @property
+    def support(self) -> int | None: ...
+    @property
+    def against(self) -> int | None: ...
+    @property
+    def sigma_azimuth(self) -> float | None: ...
+    @property
+    def sigma_range(self) -> float | None: ...
+    @property
+    def normal_x(self) -> float | None: ...
+    @property
+    def normal_y(self) -> float | None: ...
     def __eq__(self, value: object, /) -> bool: ...
     def __ne__(self, value: object, /) -> bool: ...
     def __hash__(self) -> int: ...
@@ -152,6 +166,10 @@ class Fuser:
         max_travel: float | None = None,
         min_step: float | None = None,
         drop_held: bool = False,
+        held: _Held | None = None,
+        estimator: _Estimator = "atm",
+        confidence: float | None = None,
+        range_error: float | None = None,
     ) -> Fuser: ...
     def push(
         self,
@@ -189,6 +207,10 @@ def fuse(
     drop_held: bool = False,
     keep: Iterable[_Kind] | str | None = None,
     sensor_index: ArrayLike | None = None,
+    held: _Held | None = None,
+    estimator: _Estimator = "atm",
+    confidence: float | None = None,
+    range_error: float | None = None,
 ) -> NDArray[np.void]: ...
 def crossings(
     t: ArrayLike,
@@ -248,6 +270,10 @@ def fuse_file(
     reorder: float | str | None = None,
     max_message: int | None = None,
     progress: Callable[[int, int | None], object] | None = None,
+    held: _Held | None = None,
+    estimator: _Estimator = "atm",
+    confidence: float | None = None,
+    range_error: float | str | None = None,
 ) -> dict[str, Any]: ...
 def plan(
     distance: float,
