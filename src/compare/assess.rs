@@ -11,12 +11,14 @@ use serde::Serialize;
 use super::{
     agreement::Places,
     method::Name,
+    recording::Recording,
     run::{Outcome, estimate},
 };
 use crate::{
     baseline::Evidence,
     error::Result,
     eval::{COVERED, Estimate, Judge, Scores, Spread},
+    log::{View, truth::Truth},
     map::spread_bits,
     world::World,
 };
@@ -76,6 +78,24 @@ pub struct SameReadings {
 
 /// The reading that an estimate speaks of.
 type Key = (i64, Arc<str>);
+
+/// Assesses what the methods say of a recording: against the world where it is known, else among themselves.
+///
+/// # Errors
+/// A point that no map can hold.
+pub fn assess(
+    outcomes: &[Outcome],
+    recording: &Recording,
+    world: Option<&World>,
+    truth: Option<&Truth>,
+) -> Result<Vec<Assessment>> {
+    let Some(world) = world else {
+        return among_themselves(outcomes, recording.readings());
+    };
+    let views: Vec<View> = recording.views().iter().copied().collect();
+    let judge = Judge::new(world, truth, &views);
+    against_world(outcomes, &judge, world, recording.readings(), recording.ids())
+}
 
 /// Assesses what the methods say of a drive through a known world.
 ///

@@ -4,6 +4,7 @@
 //! the arc-transversal median come out of [`crate::pipeline::fuse`], as `atm fuse` has them.
 mod agreement;
 mod assess;
+mod json;
 mod method;
 mod picture;
 mod recording;
@@ -11,7 +12,8 @@ mod run;
 mod simulated;
 
 pub use self::{
-    assess::{Assessment, Best, SameReadings, Sharpness, against_world, among_themselves},
+    assess::{Assessment, Best, SameReadings, Sharpness, against_world, among_themselves, assess},
+    json::as_json,
     method::{Name, Options},
     picture::{cells, scene},
     recording::{Recording, Replay},

@@ -68,7 +68,7 @@ pub mod named {
 
     numbers! { x y yaw distance radius first_yaw min_range max_range }
     optional_numbers! {
-        min_angle field_of_view max_age max_travel min_step improvement speed rate range_resolution confidence range_error
+        min_angle field_of_view max_age max_travel min_step improvement speed rate range_resolution confidence range_error cell
     }
     macro_rules! optional_words {
         ($($name:ident)*) => {$(

@@ -28,15 +28,22 @@ const MOST_IN_A_ROW: usize = 1024;
 const MANY_NEAR: f64 = 0.2;
 
 /// Readings in arrays, as a log: those of one time and pose are one record.
-struct ArraySource<'r, 'w> {
+pub struct ArraySource<'r, 'w> {
     readings: Readings<'r>,
+    /// The sensors' ids, where somebody asks for them.
+    ids: &'r [Arc<str>],
     next: usize,
     /// Since the watch was last asked.
     unwatched: usize,
     watch: &'w mut Watch,
 }
 
-impl ArraySource<'_, '_> {
+impl<'r, 'w> ArraySource<'r, 'w> {
+    /// All readings, of sensors with these ids.
+    pub fn new(readings: Readings<'r>, ids: &'r [Arc<str>], watch: &'w mut Watch) -> Self {
+        Self { readings, ids, next: 0, unwatched: 0, watch }
+    }
+
     /// Whether two readings belong to one record. By bits: -0.0 and 0.0 turn differently.
     fn are_one(&self, one: usize, other: usize) -> bool {
         let bits = |index| {
@@ -87,9 +94,8 @@ impl Source for ArraySource<'_, '_> {
         true
     }
 
-    /// They are the rig's, and all known beforehand.
     fn ids(&self) -> &[Arc<str>] {
-        &[]
+        self.ids
     }
 }
 
@@ -105,7 +111,8 @@ fn run(
     let mut watch = Watch::new();
     let (summary, result) = py.detach(|| {
         readings.check(None)?;
-        let mut source = ArraySource { readings, next: 0, unwatched: 0, watch: &mut watch };
+        // The rig's sensors are known beforehand.
+        let mut source = ArraySource::new(readings, &[], &mut watch);
         let told = &mut |_| {};
         Ok::<_, PyErr>(match consensus {
             None => pipeline::fuse(&mut source, None, sensors, settings, sink, told),

@@ -10,12 +10,14 @@ mod fuse;
 mod fuser;
 mod interrupt;
 mod job;
+mod judge;
 mod options;
 mod plan;
 mod raise;
 mod readings;
 mod rig;
 mod sensors;
+mod simulate;
 mod table;
 mod time;
 
@@ -40,14 +42,16 @@ mod _atm {
         file::fuse_file,
         fuse::{crossings, fuse},
         fuser::{PyEcho, PyFuser},
+        judge::{compare, evaluate},
         plan::plan,
         rig::{_restore_rig, _restore_sensor, PyRig, PySensor},
+        simulate::simulate,
     };
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-        for name in ["crossings", "fuse", "fuse_file", "plan"] {
+        for name in ["compare", "crossings", "evaluate", "fuse", "fuse_file", "plan", "simulate"] {
             // Where they are for those who use them.
             module.getattr(name)?.setattr("__module__", "atm")?;
         }

@@ -68,12 +68,7 @@ impl Choice<'_> {
 impl Options<'_> {
     /// What holds where the rig says nothing.
     pub fn defaults(&self) -> PyResult<Defaults> {
-        let beam = self.field_of_view.map(Beam::new).transpose();
-        let resolution = self.range_resolution.map(RangeResolution::new).transpose();
-        Ok(Defaults {
-            field_of_view: beam.map_err(|error| raise::value("field_of_view", error))?,
-            range_resolution: resolution.map_err(|error| raise::value("range_resolution", error))?,
-        })
+        defaults(self.field_of_view, self.range_resolution)
     }
 
     /// How the library is to fuse.
@@ -83,12 +78,7 @@ impl Options<'_> {
             history: self.history,
             bounds: self.bounds()?,
             estimator: TransversalMedian {
-                min_angle: match self.min_angle {
-                    Some(radians) => MinAngle::new(radians).map_err(|error| {
-                        raise::value("min_angle", format_args!("{} rad: {error}", argument::float(radians)))
-                    })?,
-                    None => MinAngle::PAPER,
-                },
+                min_angle: min_angle(self.min_angle)?,
                 on_none: on_none(self.on_none)?,
                 on_two: on_two(self.on_two)?,
             },
@@ -112,6 +102,23 @@ pub fn held(held: Option<&str>, drop_held: bool) -> PyResult<Held> {
         Some(_) if drop_held => Err(raise::value("held", "goes without drop_held")),
         Some(word) => argument::choice("held", word, &choices),
     }
+}
+
+/// What holds where the rig says nothing.
+pub fn defaults(field_of_view: Option<f64>, range_resolution: Option<f64>) -> PyResult<Defaults> {
+    let beam = field_of_view.map(Beam::new).transpose();
+    let resolution = range_resolution.map(RangeResolution::new).transpose();
+    Ok(Defaults {
+        field_of_view: beam.map_err(|error| raise::value("field_of_view", error))?,
+        range_resolution: resolution.map_err(|error| raise::value("range_resolution", error))?,
+    })
+}
+
+/// θmin.
+pub fn min_angle(radians: Option<f64>) -> PyResult<MinAngle<f64>> {
+    let Some(radians) = radians else { return Ok(MinAngle::PAPER) };
+    MinAngle::new(radians)
+        .map_err(|error| raise::value("min_angle", format_args!("{} rad: {error}", argument::float(radians))))
 }
 
 /// The bounds on the local map; lengths in metres.

@@ -5,8 +5,10 @@ use std::iter;
 use atm::{
     core::{ArcCrossing, ConsensusEcho, Echo, Kind, Reflector},
     error::Result,
+    log::truth::{Cause, TruthPoint},
     pipeline::EchoSink,
     rig::Rig,
+    simulate::Sweep,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -15,6 +17,9 @@ use crate::time::Clock;
 
 /// Characters of the longest kind's name.
 const KIND_WIDTH: usize = 6;
+
+/// And of the longest cause's.
+const CAUSE_WIDTH: usize = 10;
 
 /// Numbers in a row of echoes: time, position, range, azimuth, count, resolution, significance.
 const ECHO_NUMBERS: usize = 8;
@@ -105,6 +110,7 @@ impl Rows {
                     Type::Time => time.to_owned(),
                     Type::Id => format!("U{}", self.id_width),
                     Type::Kind => format!("U{KIND_WIDTH}"),
+                    Type::Cause => format!("U{CAUSE_WIDTH}"),
                     Type::Float => "f8".to_owned(),
                     Type::Count => "u4".to_owned(),
                 };
@@ -122,6 +128,7 @@ enum Type {
     Time,
     Id,
     Kind,
+    Cause,
     Float,
     Count,
 }
@@ -286,5 +293,60 @@ impl EchoSink for Crossings {
 
     fn flush(&mut self) -> Result<()> {
         Ok(())
+    }
+}
+
+/// A simulated log: a row for each reading.
+pub struct Log(Rows);
+
+impl Log {
+    /// An empty table.
+    pub fn new(rig: &Rig, clock: Clock) -> Self {
+        Self(Rows::new(rig, clock))
+    }
+
+    /// Takes the readings of one instant in.
+    pub fn sweep(&mut self, sweep: &Sweep) {
+        let (rows, pose) = (&mut self.0, sweep.pose);
+        for &(sensor, range) in &sweep.readings {
+            rows.time(sweep.t);
+            rows.id(sensor);
+            for value in [range, pose.x, pose.y, pose.yaw] {
+                rows.float(value);
+            }
+        }
+    }
+
+    /// The table as numpy has it.
+    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let [range, x, y, yaw] = ["range", "x", "y", "yaw"].map(|name| (name, Type::Float));
+        self.0.into_array(py, &[("t", Type::Time), ("sensor", Type::Id), range, x, y, yaw])
+    }
+}
+
+/// Where the readings of a simulated log came from: a row for each that is an echo.
+pub struct Truths(Rows);
+
+impl Truths {
+    /// An empty table.
+    pub fn new(rig: &Rig, clock: Clock) -> Self {
+        Self(Rows::new(rig, clock))
+    }
+
+    /// Takes the truth of one reading in.
+    pub fn point(&mut self, t: i64, sensor: u16, point: &TruthPoint) {
+        let rows = &mut self.0;
+        rows.time(t);
+        rows.id(sensor);
+        for value in [point.position.x, point.position.y, point.azimuth] {
+            rows.float(value);
+        }
+        rows.bytes.extend_from_slice(&wide(Cause::name(point.cause), CAUSE_WIDTH));
+    }
+
+    /// The table as numpy has it.
+    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let [x, y, azimuth] = ["x", "y", "azimuth"].map(|name| (name, Type::Float));
+        self.0.into_array(py, &[("t", Type::Time), ("sensor", Type::Id), x, y, azimuth, ("cause", Type::Cause)])
     }
 }

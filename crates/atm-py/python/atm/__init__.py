@@ -5,6 +5,7 @@ Ultrasonic Sensor Azimuth Accuracy", IEEE Transactions on Robotics and Automatio
 
 Arrays in, arrays out: :func:`fuse`, :func:`crossings`. Tables: :func:`fuse_table`. Files: :func:`fuse_file`. Reading by
 reading: :class:`Fuser`. Sensors: :class:`Rig`, :class:`Sensor`. What to expect: :func:`plan`. Pictures: :mod:`atm.plot`.
+Worlds and scores: :func:`simulate`, :func:`evaluate`, :func:`compare`.
 
 Metres, radians; times are float seconds or int nanoseconds.
 """
@@ -18,10 +19,13 @@ from atm._atm import (
     Rig,
     Sensor,
     __version__,
+    compare,
     crossings,
+    evaluate,
     fuse,
     fuse_file,
     plan,
+    simulate,
 )
 
 if TYPE_CHECKING:
@@ -33,11 +37,14 @@ __all__ = [
     "Rig",
     "Sensor",
     "__version__",
+    "compare",
     "crossings",
+    "evaluate",
     "fuse",
     "fuse_file",
     "fuse_table",
     "plan",
+    "simulate",
 ]
 
 

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, TypedDict, final
 
@@ -14,10 +14,13 @@ __all__ = [
     "_main",
     "_restore_rig",
     "_restore_sensor",
+    "compare",
     "crossings",
+    "evaluate",
     "fuse",
     "fuse_file",
     "plan",
+    "simulate",
 ]
 
 __version__: str
@@ -30,6 +33,7 @@ _OnNone = Literal["center", "drop"]
 _OnTwo = Literal["drop", "center", "mean"]
 _Format = Literal["csv", "mcap"]
 _Path = str | PathLike[str]
+_Table = NDArray[np.void] | Mapping[str, ArrayLike]
 _SensorParts = tuple[
     str, Sequence[float], float | None, float, float, float | None, str | None
 ]
@@ -285,6 +289,44 @@ def plan(
     speed: float | None = None,
     rate: float | None = None,
 ) -> _Plan: ...
+def simulate(
+    world: _Path,
+    *,
+    rig: Rig | _Path | None = None,
+    seed: int = 1,
+    set: dict[str, str | float] | None = None,
+    noise: str | None = None,
+    field_of_view: float | None = None,
+) -> tuple[NDArray[np.void], NDArray[np.void]]: ...
+def evaluate(
+    echoes: _Table,
+    world: _Path,
+    *,
+    truth: _Table | None = None,
+    set: dict[str, str | float] | None = None,
+) -> dict[str, Any]: ...
+def compare(
+    t: ArrayLike,
+    sensor: ArrayLike | None,
+    range_: ArrayLike,
+    x: ArrayLike,
+    y: ArrayLike,
+    yaw: ArrayLike,
+    *,
+    rig: Rig | _Path,
+    world: _Path | None = None,
+    truth: _Table | None = None,
+    set: dict[str, str | float] | None = None,
+    methods: Iterable[str] | str | None = None,
+    history: int = 10,
+    min_angle: float | None = None,
+    range_resolution: float | None = None,
+    field_of_view: float | None = None,
+    drop_held: bool = False,
+    range_error: float | None = None,
+    cell: float | None = None,
+    sensor_index: ArrayLike | None = None,
+) -> dict[str, dict[str, Any]]: ...
 def _main(argv: Sequence[str]) -> int: ...
 def _restore_rig(
     name: str, sensors: Sequence[_SensorParts], toml: tuple[str, str] | None
