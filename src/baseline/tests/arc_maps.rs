@@ -36,6 +36,26 @@ fn a_lone_arc_is_pruned_and_a_crowd_stays() {
 }
 
 #[test]
+fn a_cell_needs_five_of_its_eight_neighbours() {
+    // Beams of 1° mark one cell of 0.1 m each, here (0, 20) and some around it. Those have three neighbours at most.
+    let centre = crate::map::Cell { row: 0, column: 20 };
+    let marked = |cells: &[(i32, i32)]| {
+        let reads = |(row, column): &(i32, i32)| {
+            let from = (0.05, 0.05 + 0.1 * f64::from(*row));
+            Sensor::with_beam(1.0).reads(0, from, 0.0, 0.1 * f64::from(*column))
+        };
+        let readings: Vec<_> = cells.iter().map(reads).collect();
+        run(Morphology::new(0.1).unwrap(), &readings).unwrap().evidence.unwrap()
+    };
+    let cells = [(0, 20), (1, 20), (1, 21), (0, 21), (-1, 20), (-1, 19)];
+    let (four, five) = (marked(&cells[..5]), marked(&cells));
+    assert_eq!((four.grid.get(centre), five.grid.get(centre)), (4.0, 5.0));
+    assert_eq!(four.marks(four.occupied_above).len(), 0);
+    let stays: Vec<_> = five.marks(five.occupied_above).iter().map(|mark| mark.position).collect();
+    assert_eq!(stays, [five.grid.center(centre)]);
+}
+
+#[test]
 fn of_each_column_and_side_the_cell_with_most_arcs_stays() {
     // A path along x; narrow beams to the left. Abreast of 0.55 m two arcs lie at 1 m and one at 2 m; of 1.05 m one at 2 m; nothing on
     // the right but one arc at 1.5 m abreast of 0.05 m.
