@@ -6,7 +6,7 @@
 mod support;
 
 use std::{
-    env,
+    env, fs,
     io::{self, Write},
     path::PathBuf,
 };
@@ -124,4 +124,38 @@ fn consensus_has_jambs_as_points_and_the_corridor_as_walls() {
         "{along}, {in_place} of {}",
         walls.len()
     );
+}
+
+/// Set to write what was measured into the page instead of holding it against it: `scripts/methods` does.
+const WRITE: &str = "ATM_WRITE_PAGE";
+
+/// What `atm compare` prints for a terminal, as the page has it: without times, and without methods that don't apply.
+fn as_on_the_page(printed: &str) -> String {
+    let header =
+        "| | points | entropy at 5 cm | at 10 cm | agrees | with atm |\n|---|--:|--:|--:|--:|--:|\n".to_owned();
+    let rows = printed.lines().skip(2).map(|line| line.split_whitespace().collect::<Vec<_>>());
+    let rows = rows.take_while(|row| row.len() == 7).filter(|row| row[1] != "-");
+    header + &rows.map(|row| format!("| {} |\n", row[..6].join(" | "))).collect::<String>()
+}
+
+#[test]
+fn the_page_of_the_methods_shows_its_table_and_its_maps() {
+    let Some((log, poses)) = recording() else { return };
+    let scratch = Scratch::new();
+    let drawn = scratch.name("pictures");
+    let args = ["--rig", "robond8", "--drop-held", "--range-error", "2cm", "--draw", &drawn];
+    let ran = atm(["compare", &log, "--poses", &poses].iter().chain(&args)).exits(0);
+    let (table, picture) = (as_on_the_page(ran.text()), fs::read(format!("{drawn}/side-by-side.png")).unwrap());
+    let [page, picture_place] =
+        ["methods.md", "methods.png"].map(|name| root().join("docs").join(name).to_str().unwrap().to_owned());
+    let text = read(&page);
+    let (before, rest) = text.split_once("<!-- measured: recording -->\n").expect("a place for the table");
+    let (shown, after) = rest.split_once("<!-- end -->").expect("an end of that place");
+    if env::var_os(WRITE).is_some_and(|set| !set.is_empty()) {
+        fs::write(&page, format!("{before}<!-- measured: recording -->\n{table}<!-- end -->{after}")).unwrap();
+        fs::write(&picture_place, picture).unwrap();
+        return;
+    }
+    assert_eq!(shown, table, "scripts/methods writes it");
+    assert!(fs::read(picture_place).unwrap() == picture, "scripts/methods draws it");
 }
