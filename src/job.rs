@@ -17,7 +17,7 @@ use crate::{
         Input, Source,
         ahead::Ahead,
         csv::{CsvReadings, EmptyCell, PoseUse},
-        format::{Format, MCAP_MAGIC},
+        format::Format,
         mcap::{
             ClockChoice, McapReadings, Options,
             write::{Contents, SchemaKind},
@@ -129,10 +129,7 @@ impl LogJob {
     /// # Errors
     /// It can't be read.
     pub fn open(&self) -> Result<(Format, Input)> {
-        let (found, input) = (self.opens)(&self.input)?.sniff()?;
-        // What was cut off before it could say what it is goes by its name.
-        let is_cut = input.length.is_some_and(|length| length < MCAP_MAGIC.len() as u64);
-        let found = if is_cut && Format::of_name(&self.input) == Format::Mcap { Format::Mcap } else { found };
+        let (found, input) = (self.opens)(&self.input)?.recognize(&self.input)?;
         let format = self.from.unwrap_or(found);
         if format != Format::Csv {
             return Ok((Format::Mcap, input));

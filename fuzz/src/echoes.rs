@@ -1,14 +1,11 @@
-//! Echo tables read back: the same points whole and in pieces, and scores of whatever can be used.
+//! Echoes read back from tables and recordings: the same points whole and in pieces, and scores of whatever can be used.
 
 use std::sync::LazyLock;
 
 use atm::{
     error::Problem,
     eval::evaluate,
-    log::{
-        Input,
-        echo_table::{EchoTable, Estimate},
-    },
+    log::{Input, echo_log::EchoLog, echo_table::Estimate},
     world::World,
 };
 
@@ -31,10 +28,11 @@ pub fn check(bytes: &[u8]) {
 type Said = Result<(Vec<Estimate>, Vec<Problem>), String>;
 
 fn read(input: Input) -> Said {
-    let mut table = EchoTable::new(input).map_err(|error| error.to_string())?;
+    let (format, input) = input.sniff().map_err(|error| error.to_string())?;
+    let mut log = EchoLog::new("-", format, input).map_err(|error| error.to_string())?;
     let (mut points, mut problems) = (Vec::new(), Vec::new());
     while let Some(point) =
-        table.next_estimate(&mut |problem| problems.push(problem)).map_err(|error| error.to_string())?
+        log.next_estimate(&mut |problem| problems.push(problem)).map_err(|error| error.to_string())?
     {
         let finite = |number: Option<f64>| number.is_none_or(f64::is_finite);
         assert!(point.position.x.is_finite() && point.position.y.is_finite());

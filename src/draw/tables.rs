@@ -1,4 +1,4 @@
-//! What of tables of points can be drawn: a layer for each kind.
+//! What of points in tables and recordings can be drawn: a layer for each kind.
 use std::collections::BTreeSet;
 
 use atm_core::Point2;
@@ -6,7 +6,7 @@ use atm_core::Point2;
 use super::{drive::Key, scene::Scene, thinned::Thinned};
 use crate::{
     error::Result,
-    log::{crossing_table::CrossingTable, echo_table::EchoTable},
+    log::{crossing_log::CrossingLog, echo_log::EchoLog, echo_table::EchoTable},
     summary::Dropped,
 };
 
@@ -15,15 +15,15 @@ const MOST_KINDS: usize = 32;
 /// The layer of points without a kind, and of those that are too many kinds.
 const POINTS: &str = "points";
 
-/// The layers of a table of echoes: one for each kind, in the order in which they turn up, and a ring around the point of the
+/// The layers of a log of echoes: one for each kind, in the order in which they turn up, and a ring around the point of the
 /// reading that is `shown`.
 ///
 /// # Errors
-/// The table can't be read on.
-pub fn echoes(mut table: EchoTable, shown: Option<&Key>, dropped: &mut Dropped) -> Result<Scene> {
+/// It can't be read on.
+pub fn echoes(mut echoes: EchoLog, shown: Option<&Key>, dropped: &mut Dropped) -> Result<Scene> {
     let mut kinds: Vec<(String, Thinned<Point2<f64>>)> = Vec::new();
     let mut ring = None;
-    while let Some(estimate) = table.next_estimate(&mut |problem| dropped.add(problem))? {
+    while let Some(estimate) = echoes.next_estimate(&mut |problem| dropped.add(problem))? {
         let kind = estimate.kind.as_deref().unwrap_or(POINTS);
         let index = match kinds.iter().position(|(known, _)| known == kind) {
             Some(index) => index,
@@ -64,17 +64,17 @@ pub fn truth(mut table: EchoTable, dropped: &mut Dropped) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The layer `crossings` of a table of crossings, and the readings whose arcs cross the one that is `shown`.
+/// The layer `crossings` of a log of crossings, and the readings whose arcs cross the one that is `shown`.
 ///
 /// # Errors
-/// The table can't be read on.
+/// It can't be read on.
 pub fn crossings(
-    mut table: CrossingTable,
+    mut crossings: CrossingLog,
     shown: Option<&Key>,
     dropped: &mut Dropped,
 ) -> Result<(Scene, BTreeSet<Key>)> {
     let (mut points, mut partners) = (Thinned::new(), BTreeSet::new());
-    while let Some(crossing) = table.next_crossing(&mut |problem| dropped.add(problem))? {
+    while let Some(crossing) = crossings.next_crossing(&mut |problem| dropped.add(problem))? {
         points.push(crossing.position);
         if Some(&crossing.on) == shown {
             partners.insert(crossing.with);

@@ -80,16 +80,6 @@ impl EchoTable {
             }
         }
     }
-
-    /// The usable rows one after another, up to the first error; rows that can't be used go to `problems`.
-    pub fn estimates(mut self, mut problems: impl FnMut(Problem)) -> impl Iterator<Item = Result<Estimate>> {
-        let mut failed = false;
-        std::iter::from_fn(move || {
-            let next = if failed { None } else { self.next_estimate(&mut problems).transpose() };
-            failed |= matches!(next, Some(Err(_)));
-            next
-        })
-    }
 }
 
 /// Which column is which.

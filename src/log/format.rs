@@ -51,6 +51,16 @@ impl Input {
         self.reader = Box::new(Cursor::new(start).chain(reader)) as Box<dyn io::Read + Send>;
         Ok((format, self))
     }
+
+    /// What it is by its first bytes; what was cut off before it could say goes by its name, which is `path`.
+    ///
+    /// # Errors
+    /// The file can't be read.
+    pub fn recognize(self, path: &str) -> Result<(Format, Self)> {
+        let (found, input) = self.sniff()?;
+        let is_cut = input.length.is_some_and(|length| length < MCAP_MAGIC.len() as u64);
+        Ok((if is_cut { Format::of_name(path) } else { found }, input))
+    }
 }
 
 #[cfg(test)]

@@ -7,5 +7,6 @@ mod content;
 mod file;
 mod passing;
 mod proto;
+mod read_back;
 mod robot;
 mod sample;

@@ -297,6 +297,20 @@ fn is_chunk(head: &[u8]) -> bool {
 }
 
 #[test]
+fn where_the_only_chunk_is_wrong_that_is_told_and_not_that_the_recording_is_empty() {
+    let mut bytes = drive().laid_out(Layout::Chunks(None));
+    let first = bytes.windows(9).position(is_chunk).expect("a chunk");
+    // That chunk alone, and an end without a summary: nothing else says which topics there were.
+    let length = u64::from_le_bytes(bytes[first + 1..first + 9].try_into().expect("eight bytes"));
+    bytes.truncate(first + 9 + length as usize);
+    bytes[first + 5000] ^= 4;
+    bytes.extend_from_slice(&[&[15, 4][..], &[0; 11], &[2, 20], &[0; 27], b"\x89MCAP0\r\n"].concat());
+    let (ran, counts) = fuse_bytes(&bytes, &[]);
+    ran.exits(3).says(&["1 bad_chunk", &format!("byte {first}")]);
+    assert_eq!((&counts["input_damaged"], &counts["readings"]), (&true.into(), &0.into()));
+}
+
+#[test]
 fn a_chunk_that_can_not_be_unpacked_is_left_out() {
     for compression in [Compression::Zstd, Compression::Lz4] {
         let mut bytes = drive().laid_out(Layout::Chunks(Some(compression)));

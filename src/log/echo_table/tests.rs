@@ -2,13 +2,19 @@ use atm_core::{Echo, Kind, Limits};
 
 use super::*;
 use crate::log::{
+    echo_log::EchoLog,
     echoes::TableWriter,
+    format::Format,
     tests::{broken, input, message, stuttering},
 };
 
+fn table(input: Input) -> EchoLog {
+    EchoLog::new("-", Format::Csv, input).unwrap()
+}
+
 fn read_all(input: Input) -> (Vec<Estimate>, Vec<String>) {
     let mut problems = Vec::new();
-    let estimates = EchoTable::new(input).unwrap().estimates(|problem| problems.push(problem.to_string()));
+    let estimates = table(input).estimates(|problem| problems.push(problem.to_string()));
     let estimates = estimates.collect::<Result<_>>().unwrap();
     (estimates, problems)
 }
@@ -102,7 +108,7 @@ fn a_table_without_coordinates_is_refused_with_what_it_has() {
 
 #[test]
 fn an_error_of_the_disk_comes_once_and_ends_the_rows() {
-    let mut rows = EchoTable::new(broken("x,y\n1,2\n")).unwrap().estimates(|_| {});
+    let mut rows = table(broken("x,y\n1,2\n")).estimates(|_| {});
     assert_eq!(rows.next().unwrap().unwrap(), point(1.0, 2.0));
     assert!(message(rows.next().unwrap()).contains("the disk is on fire"));
     assert!(rows.next().is_none());

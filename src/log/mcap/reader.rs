@@ -319,6 +319,6 @@ impl Reader {
 }
 
 /// A time of the file; what is out of reach is as late as can be.
-fn time(nanoseconds: u64) -> i64 {
+pub(super) fn time(nanoseconds: u64) -> i64 {
     i64::try_from(nanoseconds).unwrap_or(i64::MAX)
 }

@@ -54,6 +54,8 @@ pub(super) struct Limits {
     pub(super) max_message: u64,
     /// Whether all is wanted that a [`super::raw::Tap`] is told.
     pub(super) everything: bool,
+    /// Whether named texts are wanted, whatever else is.
+    pub(super) metadata: bool,
 }
 
 /// The records of a recording.
@@ -108,7 +110,7 @@ impl Records {
         self.complete
     }
 
-    /// Whether the file ended before it should have.
+    /// Whether some of the file is lost: it ended before it should have, or a chunk can't be used.
     pub(super) fn is_damaged(&self) -> bool {
         self.damaged
     }
@@ -153,7 +155,7 @@ impl Records {
             self.stage = next.map_err(|source| Error::Io { file: self.name.clone(), source })?;
         }
         let Some(entry) = self.arena.entries.pop_front() else { return Ok(Some((Item::Nothing, self.position()))) };
-        self.damaged |= matches!(entry.what, Kept::Problem(Reason::Truncated, _));
+        self.damaged |= matches!(entry.what, Kept::Problem(Reason::Truncated | Reason::BadChunk, _));
         let (byte, name) = (entry.byte, self.name.clone());
         let problem =
             |reason, value| Item::Problem(Problem { reason, place: Place { file: name, line: 0, byte }, value });
@@ -240,6 +242,7 @@ impl Records {
     pub(super) fn record<R: Origin>(&mut self, window: &mut Window<R>, frame: &Frame) -> io::Result<Step> {
         let wanted = match frame.opcode {
             op::SCHEMA | op::CHANNEL => true,
+            op::METADATA if self.limits.metadata => true,
             op::HEADER | op::ATTACHMENT | op::METADATA => self.limits.everything,
             op::MESSAGE => match window.peek::<2>()? {
                 None => return Ok(Step::Cut),

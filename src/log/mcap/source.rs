@@ -1,6 +1,6 @@
 //! A recording as a source of readings.
 
-use std::{fs::File, sync::Arc};
+use std::sync::Arc;
 
 use super::{
     arena::Item,
@@ -46,17 +46,11 @@ impl McapReadings {
         options: Options,
     ) -> Result<Self> {
         let name = input.name.clone();
-        let recording = match input.length {
-            Some(length) if path != "-" => {
-                let file = File::open(path).map_err(|source| Error::Io { file: name.clone(), source })?;
-                Recording::File(file, length)
-            }
-            _ => Recording::Stream(input.reader),
-        };
+        let recording = Recording::open(path, input)?;
         let everything = options.everything;
         let topics = options.range_topics.clone();
         let registry = Registry::new(Box::new(move |channel| everything || kind_of(channel, &topics).is_some()));
-        let limits = Limits { max_message: options.max_message, everything };
+        let limits = Limits { max_message: options.max_message, everything, metadata: false };
         let records = Records::open(recording, name.clone(), registry, limits)?;
         let reader = Reader::new(name, rig, track, options);
         let readings = Self { records, reader, tap: None, ended: false };

@@ -25,7 +25,7 @@ pub(super) fn check<'a>(
     has_track: bool,
 ) -> Result<(), String> {
     let kinds: Vec<(&Channel, Option<Kind>)> = channels.map(|channel| (&**channel, Kind::of(channel))).collect();
-    let refuse = |message: String| Err(format!("{message}; {}", all(&kinds)));
+    let refuse = |message: String| Err(format!("{message}; {}", all(kinds.iter().map(|(channel, _)| *channel))));
     let is_range = |kind: Kind| kind == Kind::Range;
     let readings = options.range_topics.iter().map(|topic| (topic, true, "readings"));
     for (wanted, fits, what) in readings.chain(options.pose_topic.iter().map(|topic| (topic, false, "poses"))) {
@@ -48,14 +48,12 @@ pub(super) fn check<'a>(
     Ok(())
 }
 
-/// The topics there are.
-fn all(kinds: &[(&Channel, Option<Kind>)]) -> String {
-    let shown = |(channel, _): &(&Channel, Option<Kind>)| match &channel.schema {
+/// The topics there are, in words.
+pub(super) fn all<'a>(channels: impl Iterator<Item = &'a Channel>) -> String {
+    let shown = |channel: &Channel| match &channel.schema {
         Some(schema) => format!("{} ({})", channel.topic, schema.name),
         None => format!("{} (of no type)", channel.topic),
     };
-    match kinds.len() {
-        0 => "there are no topics at all".to_owned(),
-        _ => format!("there are {}", kinds.iter().map(shown).collect::<Vec<_>>().join(", ")),
-    }
+    let shown: Vec<String> = channels.map(shown).collect();
+    if shown.is_empty() { "there are no topics at all".to_owned() } else { format!("there are {}", shown.join(", ")) }
 }

@@ -5,6 +5,11 @@ use std::{
     io::{self, BufRead, Read, Seek, SeekFrom},
 };
 
+use crate::{
+    error::{Error, Result},
+    log::Input,
+};
+
 /// Bytes that are asked for in one read.
 const SIZE: usize = 64 * 1024;
 
@@ -22,6 +27,18 @@ pub(super) enum Recording {
     File(File, u64),
     /// A pipe.
     Stream(Box<dyn Read>),
+}
+
+impl Recording {
+    /// The file at `path` where it is one, else the `input` that was opened for it.
+    pub(super) fn open(path: &str, input: Input) -> Result<Self> {
+        Ok(match input.length {
+            Some(length) if path != "-" => {
+                Self::File(File::open(path).map_err(|source| Error::Io { file: input.name, source })?, length)
+            }
+            _ => Self::Stream(input.reader),
+        })
+    }
 }
 
 impl Read for Recording {

@@ -9,7 +9,7 @@ Layers: walls and opening (of the world); path, arcs, centerline, robot, beam, b
 echoes by their kinds: median, single, center, near, pair. Kinds alone after --only leave the other layers as they are. arcs are \
 drawn by themselves where there is a log and nothing else; centerline and beams only where they are named.")]
 pub struct Draw {
-    /// Logs of readings, tables of echoes, of crossings, of the truth: which is which is found in their columns
+    /// Logs of readings, echoes, crossings, tables of the truth: which is which is found in their columns or topics
     #[arg(value_name = "INPUT", required_unless_present = "world")]
     pub inputs: Vec<String>,
     /// The picture: a path that ends in .svg or .png, or - for SVG on standard output

@@ -4,11 +4,11 @@ use super::{log::LogArgs, values::parameter};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The table needs the columns x and y; azimuth errors need t, sensor, range and azimuth as well, and a truth file from the same \
+A table needs the columns x and y; azimuth errors need t, sensor, range and azimuth as well, and a truth file from the same \
 simulation. A point over 6 in from every surface is a ghost; the surface that counts for coverage is what the beams of --log \
 could have seen, else those of a nomad200 on the world's own path.")]
 pub struct Eval {
-    /// The points: a table such as atm fuse writes, or - for standard input
+    /// The points: a table or a recording such as atm fuse writes, or - for standard input
     pub input: String,
     /// Where they should lie: a built-in world or a TOML file
     #[arg(long, value_name = "NAME|FILE")]

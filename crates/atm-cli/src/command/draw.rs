@@ -1,4 +1,4 @@
-//! `atm draw`: logs and tables in, a picture out.
+//! `atm draw`: logs, tables and recordings in, a picture out.
 
 use std::{collections::BTreeSet, io::Write, sync::Arc};
 
@@ -12,7 +12,8 @@ use atm::{
     log::{
         Input,
         content::Content,
-        crossing_table::CrossingTable,
+        crossing_log::CrossingLog,
+        echo_log::EchoLog,
         echo_table::EchoTable,
         format::Format,
         output::{Output, overwrites},
@@ -85,6 +86,8 @@ impl Inputs {
             let (format, input) = args.log.job(path, None, None)?.open()?;
             let (content, input) = match format {
                 Format::Csv => input.content()?,
+                // Topics of readings are only asked for where readings are.
+                Format::Mcap => input.recorded(path, !args.log.range_topics.is_empty())?,
                 _ => (Content::Readings, input),
             };
             opened.push((path.to_owned(), format, content, input));
@@ -96,12 +99,13 @@ impl Inputs {
         for (path, format, content, input) in opened {
             let scene = match content {
                 Content::Crossings => {
-                    let (scene, found) = tables::crossings(CrossingTable::new(input)?, shown.as_ref(), dropped)?;
+                    let crossings = CrossingLog::new(&path, format, input)?;
+                    let (scene, found) = tables::crossings(crossings, shown.as_ref(), dropped)?;
                     partners.extend(found);
                     scene
                 }
                 Content::Truth => tables::truth(EchoTable::new(input)?, dropped)?,
-                Content::Points => tables::echoes(EchoTable::new(input)?, shown.as_ref(), dropped)?,
+                Content::Points => tables::echoes(EchoLog::new(&path, format, input)?, shown.as_ref(), dropped)?,
                 _ => log(args, &path, (format, input), shown.as_ref(), &partners, dropped)?,
             };
             files.push((path, scene));

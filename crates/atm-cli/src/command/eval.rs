@@ -3,7 +3,7 @@
 use atm::{
     core::{Kind, Reflector},
     eval::{Judge, Metrics, Scores, Spread, evaluate, views},
-    log::{Input, View, echo_table::EchoTable, truth::Truth},
+    log::{View, echo_log::EchoLog, truth::Truth},
     summary::Dropped,
     world::World,
 };
@@ -20,8 +20,8 @@ pub fn run(args: &Eval) -> Result<Outcome, Failure> {
     let world = World::load(&args.world, &args.set)?;
     let mut dropped = Dropped::default();
     let truth = args.truth.as_deref().map(Truth::read).transpose()?;
-    let table = EchoTable::new(Input::open(&args.input)?)?;
-    let estimates: Vec<_> = table.estimates(|problem| dropped.add(problem)).collect::<Result<_, _>>()?;
+    let echoes = EchoLog::open(&args.input)?;
+    let estimates: Vec<_> = echoes.estimates(|problem| dropped.add(problem)).collect::<Result<_, _>>()?;
     let scores = match &args.drive {
         Some(path) => Judge::new(&world, truth.as_ref(), &views(args, path, &mut dropped)?).scores(&estimates),
         None => evaluate(&estimates, &world, truth.as_ref()),

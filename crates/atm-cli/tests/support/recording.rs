@@ -2,7 +2,10 @@
 
 use std::{collections::BTreeMap, io::Cursor};
 
-use mcap::{Compression, WriteOptions, records::MessageHeader};
+use mcap::{
+    Compression, WriteOptions,
+    records::{MessageHeader, Metadata},
+};
 
 use super::{BEAM, INCH, number, sample_rows};
 
@@ -11,6 +14,7 @@ pub const TRANSFORMS: &str = "tf2_msgs/msg/TFMessage";
 pub const ODOMETRY: &str = "nav_msgs/msg/Odometry";
 pub const POSE: &str = "geometry_msgs/msg/PoseStamped";
 pub const IMAGE: &str = "sensor_msgs/msg/Image";
+pub const CLOUD: &str = "sensor_msgs/msg/PointCloud2";
 
 const HEADER: &str = "\
 ===\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n\
@@ -40,6 +44,11 @@ pub fn definition(name: &str) -> String {
         }
         POSE => "std_msgs/Header header\nPose pose\n",
         IMAGE => "std_msgs/Header header\nuint32 height\nuint8[] data\n",
+        CLOUD => {
+            "std_msgs/Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\n\
+             uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n\
+             ===\nMSG: sensor_msgs/PointField\nstring name\nuint32 offset\nuint8 datatype\nuint32 count\n"
+        }
         other => panic!("{other}"),
     };
     format!("{own}{HEADER}{GEOMETRY}")
@@ -145,6 +154,36 @@ pub fn image(t: i64, size: usize) -> Vec<u8> {
     message
 }
 
+/// A field of a cloud's points: its name, its type's number in sensor_msgs/PointField, and each point's value.
+pub type CloudField<'a> = (&'a str, u8, &'a [f64]);
+
+/// A cloud of points with these fields one behind the other.
+pub fn cloud(t: i64, fields: &[CloudField<'_>]) -> Vec<u8> {
+    let count = fields.first().map_or(0, |(_, _, values)| values.len());
+    let (mut cdr, mut stride) = (Cdr::default().header(t, "odom").u32(1).u32(count as u32), 0);
+    cdr = cdr.u32(fields.len() as u32);
+    for (name, datatype, _) in fields {
+        cdr = cdr.text(name).u32(stride).u8(*datatype).u32(1);
+        stride += u32::try_from(packed(*datatype, 0.0).len()).expect("a few bytes");
+    }
+    let points = (0..count)
+        .flat_map(|point| fields.iter().flat_map(move |(_, datatype, values)| packed(*datatype, values[point])));
+    let points: Vec<u8> = points.collect();
+    let size = points.len() as u32;
+    points.into_iter().fold(cdr.u8(0).u32(stride).u32(size).u32(size), Cdr::u8).u8(1).message()
+}
+
+fn packed(datatype: u8, value: f64) -> Vec<u8> {
+    match datatype {
+        2 => vec![value as u8],
+        4 => (value as u16).to_le_bytes().into(),
+        6 => (value as u32).to_le_bytes().into(),
+        7 => (value as f32).to_le_bytes().into(),
+        8 => value.to_le_bytes().into(),
+        other => panic!("type {other}"),
+    }
+}
+
 /// One message of a recording.
 #[derive(Debug, Clone)]
 pub struct Message {
@@ -160,6 +199,8 @@ pub struct Recording {
     pub messages: Vec<Message>,
     /// Definitions that are not the usual ones.
     pub definitions: BTreeMap<String, String>,
+    /// Named texts, before the first message.
+    pub metadata: Vec<(String, BTreeMap<String, String>)>,
 }
 
 /// How a recording is laid out.
@@ -191,6 +232,9 @@ impl Recording {
         };
         let mut file = Cursor::new(Vec::new());
         let mut writer = options.profile("ros2").create(&mut file).expect("a recording");
+        for (name, metadata) in self.metadata.clone() {
+            writer.write_metadata(&Metadata { name, metadata }).expect("metadata");
+        }
         let mut channels = BTreeMap::new();
         for (sequence, message) in (0..).zip(&self.messages) {
             let channel_id = *channels.entry(&message.topic).or_insert_with(|| {

@@ -1,4 +1,5 @@
 //! What messages say: from a channel's schema to the values that are read of each of its messages.
+mod cloud;
 mod definition;
 mod idl;
 mod json;
@@ -9,7 +10,10 @@ mod rosmsg;
 mod said;
 mod wire;
 
-pub(super) use self::said::{Kind, Measured, Said};
+pub(super) use self::{
+    cloud::{Cloud, CloudType, Sort, Spot},
+    said::{Kind, Measured, Said},
+};
 use self::{
     definition::{Definitions, short},
     plan::Plan,

@@ -11,7 +11,7 @@ const MOST_TYPES: usize = 1 << 14;
 
 /// The value of a field, as it is on the wire.
 #[derive(Debug, Clone, Copy)]
-enum Value<'a> {
+pub(super) enum Value<'a> {
     Varint(u64),
     Eight([u8; 8]),
     Bytes(&'a [u8]),
@@ -19,14 +19,19 @@ enum Value<'a> {
 }
 
 /// The fields of a message, one after another; stops where they can't be read on.
-struct Fields<'a> {
+pub(super) struct Fields<'a> {
     rest: &'a [u8],
     broken: bool,
 }
 
 impl<'a> Fields<'a> {
-    const fn new(rest: &'a [u8]) -> Self {
+    pub(super) const fn new(rest: &'a [u8]) -> Self {
         Self { rest, broken: false }
+    }
+
+    /// Insists that all of the message was read; the words are where it can't be read on.
+    pub(super) fn end(&self) -> Result<(), String> {
+        if self.broken { Err(format!("it can't be read on {} bytes before its end", self.rest.len())) } else { Ok(()) }
     }
 
     fn varint(&mut self) -> Option<u64> {
@@ -259,7 +264,7 @@ fn walk(message: &Message, data: &[u8], said: &mut Said, each: &mut dyn FnMut(&m
             _ => {}
         }
     }
-    if fields.broken { Err(format!("it can't be read on {} bytes before its end", fields.rest.len())) } else { Ok(()) }
+    fields.end()
 }
 
 fn set(slot: Slot, kind: u64, value: Value<'_>, said: &mut Said) -> Result<(), String> {

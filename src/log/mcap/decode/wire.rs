@@ -78,6 +78,12 @@ impl<'a> Wire<'a> {
         Ok(if self.zero { text.strip_suffix(&[0]).unwrap_or(text) } else { text })
     }
 
+    /// Bytes behind their count.
+    pub(super) fn octets(&mut self) -> Result<&'a [u8], String> {
+        let count = self.count()?;
+        self.take(count)
+    }
+
     /// How many elements come, each of at least a byte.
     pub(super) fn count(&mut self) -> Result<usize, String> {
         let count = self.u32()? as usize;

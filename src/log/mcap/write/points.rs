@@ -69,7 +69,7 @@ pub(super) fn kind_number(kind: &str) -> u8 {
 
 /// The type of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Number {
+pub(in super::super) enum Number {
     U8,
     U16,
     U32,
@@ -78,7 +78,41 @@ pub(super) enum Number {
 }
 
 impl Number {
-    const fn size(self) -> usize {
+    const ALL: [Self; 5] = [Self::U8, Self::U16, Self::U32, Self::F32, Self::F64];
+
+    /// The first that is the one looked for.
+    pub(in super::super) fn find(is_it: impl Fn(Self) -> bool) -> Option<Self> {
+        Self::ALL.into_iter().find(|number| is_it(*number))
+    }
+
+    /// Its name in ROS.
+    pub(in super::super) const fn name(self) -> &'static str {
+        match self {
+            Self::U8 => "uint8",
+            Self::U16 => "uint16",
+            Self::U32 => "uint32",
+            Self::F32 => "float32",
+            Self::F64 => "float64",
+        }
+    }
+
+    /// Whether it is a whole number.
+    pub(in super::super) const fn is_whole(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32)
+    }
+
+    /// The number that the bytes begin with, exactly; `None` where they are too few.
+    pub(in super::super) fn read(self, bytes: &[u8]) -> Option<f64> {
+        Some(match self {
+            Self::U8 => (*bytes.first()?).into(),
+            Self::U16 => u16::from_le_bytes(*bytes.first_chunk()?).into(),
+            Self::U32 => u32::from_le_bytes(*bytes.first_chunk()?).into(),
+            Self::F32 => f32::from_le_bytes(*bytes.first_chunk()?).into(),
+            Self::F64 => f64::from_le_bytes(*bytes.first_chunk()?),
+        })
+    }
+
+    pub(in super::super) const fn size(self) -> usize {
         match self {
             Self::U8 => 1,
             Self::U16 => 2,
@@ -88,7 +122,7 @@ impl Number {
     }
 
     /// Its number in sensor_msgs/PointField.
-    pub(super) const fn in_point_field(self) -> u8 {
+    pub(in super::super) const fn in_point_field(self) -> u8 {
         match self {
             Self::U8 => 2,
             Self::U16 => 4,
@@ -99,7 +133,7 @@ impl Number {
     }
 
     /// Its number in foxglove.PackedElementField.
-    pub(super) const fn in_packed_element(self) -> i64 {
+    pub(in super::super) const fn in_packed_element(self) -> i64 {
         match self {
             Self::U8 => 1,
             Self::U16 => 3,
