@@ -10,12 +10,15 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use support::recording::*;
+use mcap::Compression;
+use support::{recording::*, *};
 
 /// Most memory any run here may take, in KiB.
 const MOST: u64 = 96 * 1024;
 /// How far apart two peaks may lie and still be equal, in KiB.
 const EQUAL: u64 = 2048;
+/// What a handful of chunks take, in KiB.
+const AHEAD: u64 = 16 * 1024;
 /// What nobody asked for, in one message.
 const IMAGE_BYTES: usize = 1 << 20;
 
@@ -62,9 +65,14 @@ fn with_echoes(times: usize, layout: Layout) -> Vec<u8> {
 }
 
 fn high_water_mark(child: &Child) -> u64 {
-    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).expect("the running command");
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("its peak");
-    line.trim().trim_end_matches(" kB").parse().expect("a number")
+    mark(child.id()).expect("the peak of the running command")
+}
+
+/// The most memory that a process has taken so far, in KiB.
+fn mark(process: u32) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().trim_end_matches(" kB").parse().ok()
 }
 
 /// Runs the command on what comes down a pipe. Returns its peak memory in KiB.
@@ -122,4 +130,38 @@ fn copying_takes_the_same_memory_for_seven_times_the_recording() {
 #[test]
 fn drawing_takes_the_same_memory_for_seven_times_the_recording() {
     peaks_of(&["draw", "-", "-o", "-"], |times| with_echoes(times, Layout::Chunks(None)));
+}
+
+/// Runs the command on a file. Returns its peak memory in KiB, as it was shortly before its end.
+fn peak_of_file(path: &str) -> u64 {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_atm"))
+        .args(["fuse", path])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("atm starts");
+    let mut peak = 0;
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("its status") {
+            break status;
+        }
+        // One that has just ended has no memory.
+        peak = peak.max(mark(child.id()).unwrap_or(0));
+    };
+    assert_eq!(status.code(), Some(0));
+    peak
+}
+
+#[test]
+fn chunks_that_are_unpacked_ahead_of_a_file_are_as_few_for_six_times_the_recording() {
+    let scratch = Scratch::new();
+    for compression in [None, Some(Compression::Zstd)] {
+        let [small, large] = [1, 7].map(|times| {
+            let bytes = long(times, Layout::Chunks(compression));
+            peak_of_file(&scratch.file("drive.mcap", &bytes))
+        });
+        println!("{compression:?}: {small} KiB, {large} KiB");
+        // How many of them there are at the same time is chance, up to a bound.
+        assert!(large < small + AHEAD && large < MOST, "{small} {large}");
+    }
 }

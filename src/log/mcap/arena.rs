@@ -16,6 +16,7 @@ pub(super) const ARENA: usize = 16 << 20;
 pub(super) const MOST_ENTRIES: usize = 1 << 16;
 
 /// Something that a recording holds.
+#[derive(Debug)]
 pub(super) enum Item<'a> {
     /// Profile and library.
     Header(&'a str, &'a str),

@@ -4,8 +4,8 @@ use std::io;
 
 use super::{
     arena::{ARENA, Kept, MOST_ENTRIES},
-    body::Body,
-    fields::Fields,
+    body::{Body, Compression},
+    chunk_head::{ChunkHead, Headless, holds_nothing},
     op,
     records::{Frame, HEAD, Records, Stage, Step, framed},
     registry::Interest,
@@ -13,18 +13,13 @@ use super::{
 };
 use crate::error::Reason;
 
-/// A chunk's fields before its compression.
-const CHUNK_HEAD: usize = 32;
-/// Longest name of a compression.
-const LONGEST_NAME: usize = 32;
-
 /// A chunk that is being unpacked.
 pub(super) struct Chunk {
     window: Window<Body>,
     /// Where it begins in the file, and where the record behind it does.
     byte: u64,
     end: u64,
-    /// The checksum it should have; 0 for none.
+    /// The checksum it should have; 0 for none, and for one that was found to be right.
     checksum: u32,
     /// Unpacked bytes still to come.
     left: u64,
@@ -32,47 +27,49 @@ pub(super) struct Chunk {
     early: bool,
 }
 
+impl Chunk {
+    fn new(window: Window<Body>, head: &ChunkHead) -> Self {
+        let ChunkHead { byte, end, unpacked: left, checksum, .. } = *head;
+        Self { window, byte, end, checksum, left, early: false }
+    }
+}
+
 impl Records {
     /// Begins with a chunk, or passes over it.
     pub(super) fn chunk(&mut self, mut window: Window<Recording>, frame: &Frame) -> io::Result<Stage> {
-        let head: [u8; HEAD + CHUNK_HEAD] = match window.peek()? {
-            Some(head) => head,
-            None => return Ok(self.cut(window, frame.byte, "a chunk")),
+        let head = match ChunkHead::read(&mut window, frame)? {
+            Ok(head) => head,
+            Err(Headless::Cut) => return Ok(self.cut(window, frame.byte, "a chunk")),
+            Err(Headless::Wrong(words)) => return self.bad_chunk(window, frame.byte, frame.end(), words),
         };
-        let end = frame.byte.saturating_add(HEAD as u64).saturating_add(frame.length);
-        let mut fields = Fields(head.get(HEAD + 16..).unwrap_or_default());
-        let parts = (|| Some((fields.u64()?, fields.u32()?, usize::try_from(fields.u32()?).ok()?)))();
-        let Some((left, checksum, name)) = parts.filter(|(.., name)| *name <= LONGEST_NAME) else {
-            return self.bad_chunk(window, frame.byte, end, "its compression has no name that is known");
-        };
-        let names = HEAD + CHUNK_HEAD..HEAD + CHUNK_HEAD + name;
-        let head = window.need(names.end + 8)?.to_vec();
-        let (Some(compression), Some(size)) = (head.get(names.clone()), head.get(names.end..)) else {
-            return Ok(self.cut(window, frame.byte, "a chunk"));
-        };
-        let Some(size) = Fields(size).u64() else {
-            return Ok(self.cut(window, frame.byte, "a chunk"));
-        };
-        if size > frame.length.saturating_sub(head.len() as u64 - HEAD as u64) {
-            return self.bad_chunk(window, frame.byte, end, "its content reaches beyond its end");
+        if self.can_pass_over(&window, head.end) {
+            window.drop_checksum();
+            if holds_nothing(&mut window, head.end, |id| self.registry.interest(id) == Interest::Unwanted)? {
+                return Ok(Stage::File(window));
+            }
+            if let Some(bytes) = self.ahead.take(&head, window.origin(), || self.registry.unwanted()) {
+                window.go_to(head.end)?;
+                let chunk = Chunk { checksum: 0, ..Chunk::new(Window::whole(Body::Behind(window), bytes), &head) };
+                return Ok(self.begin_chunk(chunk, head.content));
+            }
+            window.go_to(head.byte)?;
         }
-        if self.passes_over(&mut window, end)? {
-            return Ok(Stage::File(window));
-        }
-        window.skip(head.len() as u64)?;
-        self.position = window.position();
+        window.skip(head.content - head.byte)?;
+        let content = window.position();
+        let Some(compression) = Compression::named(&head.compression) else {
+            self.registry.begin_chunk();
+            let words =
+                format!("its compression is {}, which is not known", String::from_utf8_lossy(&head.compression));
+            return self.bad_chunk(window, head.byte, head.end, &words);
+        };
+        let body = Body::new(window, head.packed, compression)?;
+        Ok(self.begin_chunk(Chunk::new(Window::new(body, true), &head), content))
+    }
+
+    fn begin_chunk(&mut self, chunk: Chunk, content: u64) -> Stage {
+        self.position = content;
         self.registry.begin_chunk();
-        match Body::new(window, size, compression)? {
-            Ok(body) => {
-                let window = Window::new(body, true);
-                let byte = frame.byte;
-                Ok(Stage::Chunk(Box::new(Chunk { window, byte, end, checksum, left, early: false })))
-            }
-            Err(packed) => {
-                let words = format!("its compression is {}, which is not known", String::from_utf8_lossy(compression));
-                self.bad_chunk(packed.into_inner(), frame.byte, end, &words)
-            }
-        }
+        Stage::Chunk(Box::new(chunk))
     }
 
     /// Counts a chunk as unusable, and goes on behind it.
@@ -86,34 +83,9 @@ impl Records {
         Ok(Stage::File(window))
     }
 
-    /// Passes over the chunk that ends at `end` where the indexes behind it say that it holds no message that is wanted.
-    fn passes_over(&mut self, window: &mut Window<Recording>, end: u64) -> io::Result<bool> {
-        let start = window.position();
-        if !self.complete || self.limits.everything || window.length().is_none_or(|length| end >= length) {
-            return Ok(false);
-        }
-        window.drop_checksum();
-        window.skip(end - start)?;
-        let mut indexes = 0;
-        while let Some(head) = window.peek::<HEAD>()? {
-            let frame = framed(head, window.position());
-            if frame.opcode != op::MESSAGE_INDEX || frame.length < 6 {
-                break;
-            }
-            window.use_up(HEAD);
-            let mut fields = Fields(window.need(6)?);
-            let (Some(id), Some(size)) = (fields.u16(), fields.u32()) else { break };
-            if size > 0 && self.registry.interest(id) != Interest::Unwanted {
-                indexes = 0;
-                break;
-            }
-            indexes += 1;
-            window.skip(frame.length)?;
-        }
-        if indexes == 0 {
-            window.go_to(start)?;
-        }
-        Ok(indexes > 0)
+    /// Whether the chunk that ends at `end` may be passed over where the indexes behind it say that nothing in it is wanted.
+    fn can_pass_over(&self, window: &Window<Recording>, end: u64) -> bool {
+        self.complete && !self.limits.everything && window.length().is_some_and(|length| end < length)
     }
 
     /// Unpacks a chunk until it ends or enough of it is kept.
@@ -159,7 +131,11 @@ impl Records {
         let found = chunk.window.take_checksum().unwrap_or_default();
         let fault = fault.or_else(|| rest_of(&mut chunk.window));
         let is_cut = fault.is_some() && chunk.window.origin().is_cut();
-        let (mut window, left) = chunk.window.into_origin().into_file();
+        let (body, bytes) = chunk.window.into_parts();
+        if matches!(body, Body::Behind(_)) {
+            self.ahead.give_back(bytes);
+        }
+        let (mut window, left) = body.into_file();
         if is_cut {
             return Ok(self.cut_chunk(window, chunk.byte));
         }

@@ -8,6 +8,7 @@ use super::{
     raw::Channel,
     records::{Limits, Records},
     registry::Registry,
+    unpacking::Ahead,
     window::Recording,
     write::topics::{CROSSING_POINTS, ECHOES},
 };
@@ -40,7 +41,7 @@ impl Input {
             Recording::Stream(Box::new(Cursor::new(start)))
         };
         let limits = Limits { max_message: Options::MAX_MESSAGE, everything: false, metadata: false };
-        let mut records = Records::open(recording, name, Registry::new(Box::new(|_| false)), limits)?;
+        let mut records = Records::open(recording, name, Registry::new(Box::new(|_| false)), limits, Ahead::Never)?;
         // What is wrong with it is told by whoever reads it.
         while !records.is_complete() && records.position() < LOOKED_AT && records.next()?.is_some() {}
         Ok((of(records.registry().channels().map(|channel| &**channel), readings), self))

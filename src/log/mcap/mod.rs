@@ -6,7 +6,10 @@
 //! What was written here is read back as points: clouds under one topic → the numbers of each point → an echo or a crossing.
 mod arena;
 mod body;
+#[cfg(test)]
+mod built;
 mod chunk;
+mod chunk_head;
 mod clocks;
 mod crossings;
 mod decode;
@@ -30,6 +33,8 @@ mod source;
 mod summary;
 mod topics;
 mod tree;
+mod unpacker;
+mod unpacking;
 mod whereabouts;
 mod window;
 pub mod write;

@@ -12,6 +12,7 @@ use super::{
     registry::Registry,
     sensor_ids::SensorIds,
     topics,
+    unpacking::Ahead,
     window::Recording,
 };
 use crate::{
@@ -57,7 +58,7 @@ impl<const N: usize> Points<N> {
         let name = input.name.clone();
         let registry = Registry::new(Box::new(move |channel| channel.topic == topic));
         let limits = Limits { max_message: Options::MAX_MESSAGE, everything: false, metadata: true };
-        let records = Records::open(Recording::open(path, input)?, name.clone(), registry, limits)?;
+        let records = Records::open(Recording::open(path, input)?, name.clone(), registry, limits, Ahead::Never)?;
         let held = Held { points: Vec::new(), stride: 0, spots: None, passed: 0, t: 0, byte: 0 };
         let mut points = Self { name, records, topic, wanted, sensors: SensorIds::default(), held, is_there: false };
         if points.records.is_complete() {

@@ -11,6 +11,7 @@ use super::{
     fields::Fields,
     op,
     registry::{Interest, Registry},
+    unpacking::Ahead,
     window::{Origin, Recording, Window},
 };
 use crate::{
@@ -40,6 +41,13 @@ pub(super) struct Frame {
     pub(super) byte: u64,
 }
 
+impl Frame {
+    /// Where the record behind it begins.
+    pub(super) fn end(&self) -> u64 {
+        self.byte.saturating_add(HEAD as u64).saturating_add(self.length)
+    }
+}
+
 /// What became of the next record.
 pub(super) enum Step {
     Taken,
@@ -67,6 +75,7 @@ pub(super) struct Records {
     /// The summary has told all channels there are.
     pub(super) complete: bool,
     pub(super) limits: Limits,
+    pub(super) ahead: Ahead,
     pub(super) arena: Arena,
     /// Channels that were handed on.
     told: Vec<u64>,
@@ -77,7 +86,13 @@ impl Records {
     /// Checks the first bytes, and reads the summary where there is one and the file can be read from anywhere.
     ///
     /// Errors where the file can't be read, or is no recording. One that ends within its first bytes is a damaged one.
-    pub(super) fn open(recording: Recording, name: Arc<str>, mut registry: Registry, limits: Limits) -> Result<Self> {
+    pub(super) fn open(
+        recording: Recording,
+        name: Arc<str>,
+        mut registry: Registry,
+        limits: Limits,
+        ahead: Ahead,
+    ) -> Result<Self> {
         let failed = |source| Error::Io { file: name.clone(), source };
         let mut window = Window::new(recording, false);
         let statistics = super::summary::read(&mut window, &mut registry).map_err(failed)?;
@@ -97,7 +112,8 @@ impl Records {
             let place = Place { file: name, line: 0, byte: 0 };
             return Err(Error::Format { place, message: "no MCAP recording: it does not begin as one".into() });
         };
-        Ok(Self { name, stage, position: 0, registry, complete, limits, arena, told: vec![0; 1 << 10], damaged: false })
+        let (told, damaged) = (vec![0; 1 << 10], false);
+        Ok(Self { name, stage, position: 0, registry, complete, limits, ahead, arena, told, damaged })
     }
 
     /// The channels known so far.
@@ -348,8 +364,7 @@ impl Records {
             return Ok(self.cut_summary(window, byte));
         };
         let frame = framed(head, byte);
-        let end = byte.saturating_add(HEAD as u64).saturating_add(frame.length);
-        let cut = window.length().is_some_and(|length| end > length);
+        let cut = window.length().is_some_and(|length| frame.end() > length);
         window.use_up(HEAD);
         if cut || window.skip(frame.length)? < frame.length {
             return Ok(self.cut_summary(window, byte));

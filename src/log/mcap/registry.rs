@@ -116,6 +116,11 @@ impl Registry {
         }
     }
 
+    /// The channels whose messages nobody wants, in the order of their numbers.
+    pub(super) fn unwanted(&self) -> Vec<u16> {
+        self.channels.iter().filter(|(_, (_, wanted))| !wanted).map(|(id, _)| *id).collect()
+    }
+
     pub(super) fn channel(&self, id: u16) -> Option<&Arc<Channel>> {
         self.channels.get(&id).map(|(channel, _)| channel)
     }

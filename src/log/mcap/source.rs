@@ -10,6 +10,7 @@ use super::{
     records::{Limits, Records},
     registry::Registry,
     topics::{self, is_clock, kind_of},
+    unpacking::Ahead,
     window::Recording,
 };
 use crate::{
@@ -51,7 +52,7 @@ impl McapReadings {
         let topics = options.range_topics.clone();
         let registry = Registry::new(Box::new(move |channel| everything || kind_of(channel, &topics).is_some()));
         let limits = Limits { max_message: options.max_message, everything, metadata: false };
-        let records = Records::open(recording, name.clone(), registry, limits)?;
+        let records = Records::open(recording, name.clone(), registry, limits, Ahead::of(path))?;
         let reader = Reader::new(name, rig, track, options);
         let readings = Self { records, reader, tap: None, ended: false };
         if readings.records.is_complete() {

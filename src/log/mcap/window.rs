@@ -26,7 +26,7 @@ pub(super) enum Recording {
     /// A file and its length.
     File(File, u64),
     /// A pipe.
-    Stream(Box<dyn Read>),
+    Stream(Box<dyn Read + Send>),
 }
 
 impl Recording {
@@ -62,7 +62,7 @@ impl Origin for Recording {
 /// The window: what was read and is not yet used, and how far it is.
 pub(super) struct Window<R> {
     origin: R,
-    bytes: Box<[u8]>,
+    bytes: Vec<u8>,
     start: usize,
     end: usize,
     /// The origin has said that there is no more.
@@ -74,8 +74,18 @@ pub(super) struct Window<R> {
 
 impl<R: Origin> Window<R> {
     pub(super) fn new(origin: R, hash: bool) -> Self {
-        let hasher = hash.then(crc32fast::Hasher::new);
-        Self { origin, bytes: vec![0; SIZE].into_boxed_slice(), start: 0, end: 0, ended: false, position: 0, hasher }
+        Self { hasher: hash.then(crc32fast::Hasher::new), ..Self::of_size(origin, SIZE) }
+    }
+
+    /// A window of another size, in bytes.
+    pub(super) fn of_size(origin: R, size: usize) -> Self {
+        Self { origin, bytes: vec![0; size], start: 0, end: 0, ended: false, position: 0, hasher: None }
+    }
+
+    /// A window that is all of `bytes`, with nothing behind them.
+    pub(super) fn whole(origin: R, bytes: Vec<u8>) -> Self {
+        let end = bytes.len();
+        Self { origin, bytes, start: 0, end, ended: true, position: 0, hasher: None }
     }
 
     /// What the bytes come from.
@@ -83,9 +93,9 @@ impl<R: Origin> Window<R> {
         &self.origin
     }
 
-    /// What the bytes come from, with what was read of it and not used gone.
-    pub(super) fn into_origin(self) -> R {
-        self.origin
+    /// What the bytes come from, with what was read of it and not used gone, and the window's memory.
+    pub(super) fn into_parts(self) -> (R, Vec<u8>) {
+        (self.origin, self.bytes)
     }
 
     /// Bytes used so far.
@@ -138,8 +148,10 @@ impl<R: Origin> Window<R> {
     /// Uses up the next `count` bytes, read or not; says how many there were as far as that is known.
     pub(super) fn skip(&mut self, count: u64) -> io::Result<u64> {
         let there = (self.end - self.start) as u64;
-        if count > there + SIZE as u64 && self.hasher.is_none() {
+        if count > there + self.bytes.len() as u64 && self.hasher.is_none() {
             self.use_up(self.end - self.start);
+            // What was read before does not lie before what comes now.
+            (self.start, self.end) = (0, 0);
             if self.origin.pass(count - there)? {
                 self.position += count - there;
                 return Ok(count);
@@ -197,11 +209,19 @@ impl Window<Recording> {
         }
     }
 
-    /// Goes to a place of the file; `false` where it is none. No checksum is kept from then on.
+    /// Goes to a place of the file, which costs nothing within the window; `false` where it is none. No checksum is kept from
+    /// then on.
     pub(super) fn go_to(&mut self, position: u64) -> io::Result<bool> {
         let Recording::File(file, _) = &mut self.origin else { return Ok(false) };
-        file.seek(SeekFrom::Start(position))?;
-        (self.start, self.end, self.ended, self.position, self.hasher) = (0, 0, false, position, None);
+        let first = self.position - self.start as u64;
+        match position.checked_sub(first) {
+            Some(there) if there <= self.end as u64 => self.start = there as usize,
+            _ => {
+                file.seek(SeekFrom::Start(position))?;
+                (self.start, self.end) = (0, 0);
+            }
+        }
+        (self.ended, self.position, self.hasher) = (false, position, None);
         Ok(true)
     }
 
@@ -240,3 +260,6 @@ impl<R: Origin> BufRead for Window<R> {
         self.use_up(count);
     }
 }
+
+#[cfg(test)]
+mod tests;

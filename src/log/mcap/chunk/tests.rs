@@ -1,15 +1,14 @@
-use std::io::Write;
-
-use super::super::{McapReadings, Options, records::MAGIC};
+use super::super::{
+    McapReadings, Options,
+    built::{chunk, lz4, record, unfinished, zstd},
+    op,
+    records::MAGIC,
+};
 use super::*;
 use crate::log::{
     Input, Next, Row, Source,
     tests::{input, stuttering},
 };
-
-fn record(opcode: u8, content: &[u8]) -> Vec<u8> {
-    [&[opcode][..], &(content.len() as u64).to_le_bytes(), content].concat()
-}
 
 /// A recording of one chunk without a checksum, whose packed content somebody may `spoil`.
 fn recording(compression: &str, pack: impl Fn(&[u8]) -> Vec<u8>, spoil: impl Fn(&mut [u8])) -> Vec<u8> {
@@ -17,28 +16,7 @@ fn recording(compression: &str, pack: impl Fn(&[u8]) -> Vec<u8>, spoil: impl Fn(
     let plain = record(op::SCHEMA, &schema).repeat(20);
     let mut packed = pack(&plain);
     spoil(&mut packed);
-    let chunk = [
-        &[0; 16][..],
-        &(plain.len() as u64).to_le_bytes(),
-        &[0; 4],
-        &(compression.len() as u32).to_le_bytes(),
-        compression.as_bytes(),
-        &(packed.len() as u64).to_le_bytes(),
-        &packed,
-    ]
-    .concat();
-    let parts = [record(op::HEADER, &[0; 8]), record(op::CHUNK, &chunk), record(op::DATA_END, &[0; 4])];
-    [&MAGIC[..], &parts.concat(), &record(op::FOOTER, &[0; 20]), &MAGIC].concat()
-}
-
-fn lz4(plain: &[u8]) -> Vec<u8> {
-    let mut encoder = lz4::EncoderBuilder::new().build(Vec::new()).unwrap();
-    encoder.write_all(plain).unwrap();
-    encoder.finish().0
-}
-
-fn zstd(plain: &[u8]) -> Vec<u8> {
-    zstd::encode_all(plain, 1).unwrap()
+    unfinished(&chunk(compression, plain.len() as u64, 0, &packed))
 }
 
 /// Why which byte of the recording can't be used.
