@@ -5,7 +5,8 @@
 use std::{hint::black_box, sync::Arc};
 
 use atm::{
-    core::{Bounds, Echo, Kind, TransversalMedian},
+    core::Bounds,
+    echo::{AnyEcho, AnyEstimator, Usual},
     error::{Problem, Result},
     log::{
         Input, Next, Row, Source,
@@ -109,35 +110,12 @@ impl Source for Columns<'_> {
     }
 }
 
-/// A row of an echo table.
-#[expect(dead_code, reason = "written for somebody to read")]
-struct EchoRow {
-    t: i64,
-    sensor: u16,
-    position: [f64; 2],
-    kind: Kind,
-    range: f64,
-    azimuth: f64,
-    crossings: u32,
-    resolution: f64,
-    significance: f64,
-}
-
-struct Rows(Vec<EchoRow>);
+/// Rows of an echo table.
+struct Rows(Vec<Usual>);
 
 impl EchoSink for Rows {
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        self.0.push(EchoRow {
-            t: echo.t,
-            sensor: echo.sensor,
-            position: [echo.position.x, echo.position.y],
-            kind: echo.kind,
-            range: echo.range,
-            azimuth: echo.azimuth(),
-            crossings: echo.crossings,
-            resolution: echo.resolution,
-            significance: echo.significance(),
-        });
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
+        self.0.push(echo.usual());
         Ok(true)
     }
 
@@ -147,8 +125,7 @@ impl EchoSink for Rows {
 }
 
 fn echoes(readings: &Readings, sensors: &[SensorModel], emit: Emit) -> usize {
-    let settings =
-        Settings { emit, history: 10, bounds: Bounds::NONE, estimator: TransversalMedian::PAPER, strict: true };
+    let settings = Settings { emit, history: 10, bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: true };
     let mut rows = Rows(Vec::new());
     let mut source = Columns { readings, next: 0 };
     let (_, result) = fuse(&mut source, None, sensors, &settings, &mut rows, &mut |_| {});

@@ -7,8 +7,6 @@ use std::{
     sync::Arc,
 };
 
-use atm_core::{Consensus, Kind, Reflector};
-
 use self::{outputs::Outputs, watched::Watched};
 use crate::{
     error::{Error, Result},
@@ -237,23 +235,12 @@ pub struct FuseJob {
     pub crossings: Option<String>,
     /// Where the counts go, as JSON.
     pub summary: Option<String>,
-    /// Kinds of echoes to write, where not all are.
-    pub keep: Option<Vec<Kind>>,
-    /// The consensus, where its echoes are wanted in place of the median's.
-    pub consensus: Option<ConsensusJob>,
+    /// Kinds of echoes to write, by their words, where not all are.
+    pub keep: Option<Vec<&'static str>>,
     /// The messages of a recording that is written.
     pub schema: SchemaKind,
     /// Whether the log, a recording, is copied into the output, another one.
     pub passthrough: bool,
-}
-
-/// A run's second estimator.
-#[derive(Debug, Clone)]
-pub struct ConsensusJob {
-    /// In place of the estimator of the settings.
-    pub estimator: Consensus<f64>,
-    /// Kinds of echoes to write, where not all are.
-    pub keep: Option<Vec<Reflector>>,
 }
 
 /// How a run ended.
@@ -285,11 +272,12 @@ pub fn poses_of(log: &McapReadings) -> Option<String> {
 pub type Progress<'a> = dyn FnMut(u64, Option<u64>) -> bool + 'a;
 
 impl FuseJob {
-    /// Refuses outputs that would destroy an input or one another, and inputs that can't be had.
+    /// Refuses outputs that would destroy an input or one another, outputs that the estimator of `settings` has nothing for, and inputs
+    /// that can't be had.
     ///
     /// # Errors
     /// [`Error::Settings`].
-    pub fn check(&self) -> Result<()> {
+    pub fn check(&self, settings: &Settings) -> Result<()> {
         let refuse = |message: String| Err(Error::Settings { message });
         let outputs: Vec<&String> = [&self.output, &self.crossings, &self.summary].into_iter().flatten().collect();
         let inputs = [Some(&self.log.input), self.log.poses.as_ref(), self.rig_file.as_ref()];
@@ -304,7 +292,7 @@ impl FuseJob {
         if self.log.poses.as_deref() == Some("-") && self.log.input == "-" {
             return refuse("standard input can't be both the log and the poses".into());
         }
-        if self.consensus.is_some() && self.crossings.is_some() {
+        if settings.estimator.is_consensus() && self.crossings.is_some() {
             return refuse("--crossings: the estimator consensus has none".into());
         }
         if self.passthrough && (self.output.is_none() || self.format() != Format::Mcap) {
@@ -329,7 +317,7 @@ impl FuseJob {
     /// # Errors
     /// What keeps it from beginning; what ends it later is in [`Ended::result`].
     pub fn run(&self, settings: &Settings, progress: &mut Progress<'_>) -> Result<Ended> {
-        self.check()?;
+        self.check(settings)?;
         let (format, input) = self.log.open()?;
         let length = input.length;
         let mut log = self.log.readings(format, input, self.passthrough)?;
@@ -346,13 +334,7 @@ impl FuseJob {
         let counts = self.summary.as_deref().map(Output::create).transpose()?;
         let (source, track) = log.source();
         let mut watched = Watched::new(source, length, progress);
-        let fused = match &self.consensus {
-            None => pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {}),
-            Some(ConsensusJob { estimator, .. }) => {
-                pipeline::fuse_consensus(*estimator, &mut watched, track, &sensors, settings, &mut outputs, &mut |_| {})
-            }
-        };
-        let (summary, result) = fused;
+        let (summary, result) = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
         let result = result.and_then(|()| watched.finish());
         let (pose_source, mut notes) = match &log {
             OpenLog::Csv(..) => (None, Vec::new()),

@@ -8,6 +8,7 @@ pub use atm_core as core;
 pub mod baseline;
 pub mod compare;
 pub mod draw;
+pub mod echo;
 pub mod error;
 pub mod eval;
 pub mod intake;

@@ -2,19 +2,17 @@
 
 use std::sync::Arc;
 
-use atm_core::{
-    ArcCrossing, Arrival, Bounds, Consensus, ConsensusEcho, Echo, Estimator, Fuser, Meaning, Reading, Rejected, Sink,
-    Storage, TransversalMedian,
-};
+use atm_core::{ArcCrossing, Arrival, Bounds, Estimator, Fuser, Meaning, Reading, Rejected, Sink, Storage};
 
 pub use crate::intake::{AnyTrack, Defaults, SensorModel, min_angle_for, readings};
 use crate::{
+    echo::{AnyEcho, AnyEstimator},
     error::{Error, Problem, Reason, Result},
     intake::{Consumer, read},
     log::{Row, Source},
     stamp,
     storage::{LatestSlots, SettledSlots, Slots, StorageError},
-    summary::Summary,
+    summary::{Counts, Summary},
     track::Pose,
 };
 
@@ -37,8 +35,8 @@ pub struct Settings {
     pub history: usize,
     /// More bounds on the local map.
     pub bounds: Bounds<f64>,
-    /// θmin and the options of Sec. III-B, for [`fuse`].
-    pub estimator: TransversalMedian<f64>,
+    /// Who says where on its arc an echo came from.
+    pub estimator: AnyEstimator,
     /// Whether the first unusable record ends the run.
     pub strict: bool,
 }
@@ -61,15 +59,7 @@ pub trait EchoSink {
     }
 
     /// An echo. Returns whether it was written.
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool>;
-
-    /// An echo of the consensus. Returns whether it was written.
-    ///
-    /// # Errors
-    /// Where it is not provided, it refuses: the sink takes the echoes of the median alone.
-    fn consensus(&mut self, _echo: &ConsensusEcho<f64>) -> Result<bool> {
-        Err(Error::Settings { message: "this output takes the echoes of the estimator atm alone".into() })
-    }
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool>;
 
     /// Whether [`EchoSink::crossings`] is to be called.
     fn wants_crossings(&self) -> bool {
@@ -96,20 +86,10 @@ pub fn fuse(
     sink: &mut dyn EchoSink,
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>) {
-    fuse_by(settings.estimator, source, track, sensors, settings, sink, progress)
-}
-
-/// The same by the consensus, in place of the estimator of the settings.
-pub fn fuse_consensus(
-    consensus: Consensus<f64>,
-    source: &mut dyn Source,
-    track: Option<&mut AnyTrack>,
-    sensors: &[SensorModel],
-    settings: &Settings,
-    sink: &mut dyn EchoSink,
-    progress: &mut dyn FnMut(u64),
-) -> (Summary, Result<()>) {
-    fuse_by(consensus, source, track, sensors, settings, sink, progress)
+    match settings.estimator {
+        AnyEstimator::Median(median) => fuse_by(median, source, track, sensors, settings, sink, progress),
+        AnyEstimator::Consensus(consensus) => fuse_by(consensus, source, track, sensors, settings, sink, progress),
+    }
 }
 
 fn fuse_by<E: Estimator<f64>>(
@@ -122,9 +102,9 @@ fn fuse_by<E: Estimator<f64>>(
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>)
 where
-    E::Echo: Report,
+    E::Echo: Copy + Into<AnyEcho>,
 {
-    let mut summary = Summary::default();
+    let mut summary = Summary { echoes: Counts::of(settings.estimator.kinds()), ..Summary::default() };
     let (bounds, history) = (settings.bounds, settings.history);
     // Sensors that become known on the way are added then.
     let count = sensors.len().max(1);
@@ -158,7 +138,7 @@ struct Fusing<'a, E, const B: usize> {
 impl<'a, E: Estimator<f64>, const B: usize> Fusing<'a, E, B>
 where
     Slots<f64, B>: Storage<f64>,
-    E::Echo: Report,
+    E::Echo: Copy + Into<AnyEcho>,
 {
     fn new(fuser: Fuser<f64, Slots<f64, B>, E>, room: usize, sink: &'a mut dyn EchoSink) -> Self {
         let wants_crossings = sink.wants_crossings();
@@ -210,7 +190,7 @@ where
 impl<E: Estimator<f64>, const B: usize> Consumer for Fusing<'_, E, B>
 where
     Slots<f64, B>: Storage<f64>,
-    E::Echo: Report,
+    E::Echo: Copy + Into<AnyEcho>,
 {
     fn sensors(&mut self, ids: &[Arc<str>]) -> Result<()> {
         if ids.len() > self.room {
@@ -290,41 +270,15 @@ impl Reports<'_> {
     }
 }
 
-/// An echo of some estimator, as it is counted and handed on.
-trait Report {
-    fn count(&self, summary: &mut Summary);
-
-    fn hand_on(&self, sink: &mut dyn EchoSink) -> Result<bool>;
-}
-
-impl Report for Echo<f64> {
-    fn count(&self, summary: &mut Summary) {
-        summary.echoes.add(self.kind);
-    }
-
-    fn hand_on(&self, sink: &mut dyn EchoSink) -> Result<bool> {
-        sink.echo(self)
-    }
-}
-
-impl Report for ConsensusEcho<f64> {
-    fn count(&self, summary: &mut Summary) {
-        summary.echoes.add_reflector(self.kind);
-    }
-
-    fn hand_on(&self, sink: &mut dyn EchoSink) -> Result<bool> {
-        sink.consensus(self)
-    }
-}
-
-impl<E: Report> Sink<f64, E> for Reports<'_> {
+impl<E: Copy + Into<AnyEcho>> Sink<f64, E> for Reports<'_> {
     fn echo(&mut self, echo: &E) {
         self.hand_on_crossings();
-        echo.count(self.summary);
+        let echo = (*echo).into();
+        self.summary.echoes.add(echo.kind());
         if self.failed.is_some() {
             return;
         }
-        match echo.hand_on(self.sink) {
+        match self.sink.echo(&echo) {
             Ok(written) => self.summary.written += u64::from(written),
             Err(error) => self.failed = Some(error),
         }

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use atm_core::{Kind, Reflector};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-use crate::error::{Problem, Reason};
+use crate::{
+    echo::AnyEstimator,
+    error::{Problem, Reason},
+};
 
 /// The counts of one run. As JSON, one object with these keys.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -45,50 +47,49 @@ pub struct Skipped {
     pub empty: u64,
 }
 
-/// A count for each kind of echo, of the estimator that made them.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+/// Most kinds that an estimator's echoes have.
+const MOST_KINDS: usize = 5;
+
+/// A count for each kind of echo of one estimator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Counts {
-    kinds: [u64; Kind::ALL.len()],
-    /// Those of the consensus; `None` where there was none.
-    reflectors: Option<[u64; Reflector::ALL.len()]>,
+    kinds: &'static [&'static str],
+    counts: [u64; MOST_KINDS],
+}
+
+impl Default for Counts {
+    /// Of the median's kinds.
+    fn default() -> Self {
+        Self::of(AnyEstimator::PAPER.kinds())
+    }
 }
 
 impl Counts {
+    /// None of these kinds, of which the first five can be counted.
+    pub const fn of(kinds: &'static [&'static str]) -> Self {
+        Self { kinds, counts: [0; MOST_KINDS] }
+    }
+
     /// Counts one.
-    pub fn add(&mut self, kind: Kind) {
-        for (count, listed) in self.kinds.iter_mut().zip(Kind::ALL) {
-            *count += u64::from(listed == kind);
+    pub fn add(&mut self, kind: &str) {
+        for (count, listed) in self.counts.iter_mut().zip(self.kinds) {
+            *count += u64::from(*listed == kind);
         }
     }
 
-    /// Counts one of the consensus.
-    pub fn add_reflector(&mut self, reflector: Reflector) {
-        let counts = self.reflectors.get_or_insert_default();
-        for (count, listed) in counts.iter_mut().zip(Reflector::ALL) {
-            *count += u64::from(listed == reflector);
-        }
-    }
-
-    /// The word for each kind with its count: of the consensus where it made echoes, else of the median.
-    pub fn named(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        let reflectors = self.reflectors.map(|counts| Reflector::ALL.map(Reflector::name).into_iter().zip(counts));
-        let kinds = self.reflectors.is_none().then(|| self.iter().map(|(kind, count)| (kind.name(), count)));
-        reflectors.into_iter().flatten().chain(kinds.into_iter().flatten())
-    }
-
-    /// Each kind of the median with its count.
-    pub fn iter(&self) -> impl Iterator<Item = (Kind, u64)> {
-        Kind::ALL.into_iter().zip(self.kinds)
+    /// Each kind's word with its count.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        self.kinds.iter().copied().zip(self.counts)
     }
 
     /// The count of one kind.
-    pub fn get(&self, kind: Kind) -> u64 {
+    pub fn get(&self, kind: &str) -> u64 {
         self.iter().filter(|&(listed, _)| listed == kind).map(|(_, count)| count).sum()
     }
 
     /// All together.
     pub fn total(&self) -> u64 {
-        self.named().map(|(_, count)| count).sum()
+        self.counts.iter().sum()
     }
 }
 
@@ -139,7 +140,7 @@ impl Summary {
 }
 
 fn by_kind<S: Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(counts.named())
+    serializer.collect_map(counts.iter())
 }
 
 fn by_reason<S: Serializer>(dropped: &Dropped, serializer: S) -> Result<S::Ok, S::Error> {

@@ -3,7 +3,8 @@
 use std::sync::{Arc, LazyLock, atomic::Ordering};
 
 use atm::{
-    core::{Bounds, Echo, TransversalMedian},
+    core::Bounds,
+    echo::{AnyEcho, AnyEstimator},
     error::{Error, Problem},
     intake::Defaults,
     log::{
@@ -103,8 +104,10 @@ fn tidied(row: &Row) -> Row {
 struct Table(TableWriter<Vec<u8>>);
 
 impl EchoSink for Table {
-    fn echo(&mut self, echo: &Echo<f64>) -> atm::error::Result<bool> {
-        crate::fuser::sane(echo);
+    fn echo(&mut self, echo: &AnyEcho) -> atm::error::Result<bool> {
+        if let AnyEcho::Median(echo) = echo {
+            crate::fuser::sane(echo);
+        }
         self.0.echo(echo).map_err(|source| Error::Io { file: "echoes".into(), source })?;
         Ok(true)
     }
@@ -117,13 +120,8 @@ impl EchoSink for Table {
 fn fuse(options: u8, file: &[u8], format: &TableFormat, rig: &Arc<Rig>) {
     let Ok(sensors) = Defaults::default().complete(rig) else { return };
     let emit = if options & 64 == 0 { Emit::Settled } else { Emit::Latest };
-    let settings = Settings {
-        emit,
-        history: 2,
-        bounds: Bounds::NONE,
-        estimator: TransversalMedian::PAPER,
-        strict: options & 128 != 0,
-    };
+    let settings =
+        Settings { emit, history: 2, bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: options & 128 != 0 };
     let Ok(mut source) = open(options & !0b1100, whole(file), format, Arc::clone(rig)) else { return };
     let ids = rig.sensors().iter().map(|sensor| sensor.id());
     let mut table = Table(TableWriter::echoes(Vec::new(), ids).expect("memory"));

@@ -3,7 +3,7 @@
 use arbitrary::{Result, Unstructured};
 use atm::{
     core::{
-        ArcCrossing, Arrays, Arrival, Beam, Bounds, Echo, Fuser, Isometry2, Kind, LatestArrays, Limits, MinAngle,
+        ArcCrossing, Arrays, Arrival, Beam, Bounds, Echo, Fuser, Held, Isometry2, Kind, LatestArrays, Limits, MinAngle,
         OnNone, OnTwo, Point2, RangeResolution, Reading, Rejected, SETTLED_BLOCKS, Scalar, SettledStorage, Sink,
         SnapshotStorage, Storage, TransversalMedian, Travel, UnitComplex, Vector2,
     },
@@ -126,7 +126,7 @@ fn case<T: Number, const H: usize>(input: &mut Unstructured<'_>, options: u8) ->
         on_none: if options & 8 == 0 { OnNone::Center } else { OnNone::Drop },
         on_two: *input.choose(&[OnTwo::Drop, OnTwo::Center, OnTwo::Mean])?,
     };
-    let mut bounds = Bounds::NONE.with_held_dropped(options & 16 != 0);
+    let mut bounds = Bounds::NONE.with_held(if options & 16 != 0 { Held::Drop } else { Held::Keep });
     if options & 32 != 0 {
         bounds = bounds.with_max_age(u64::from(input.arbitrary::<u8>()?));
     }

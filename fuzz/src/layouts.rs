@@ -4,7 +4,8 @@ use std::sync::{Arc, LazyLock};
 
 use arbitrary::{Result, Unstructured};
 use atm::{
-    core::{Bounds, Echo, TransversalMedian},
+    core::Bounds,
+    echo::{AnyEcho, AnyEstimator},
     intake::Defaults,
     log::{
         Source,
@@ -39,7 +40,7 @@ pub fn check(bytes: &[u8]) {
         emit,
         history: usize::from(options >> 1 & 7) + 1,
         bounds: Bounds::NONE,
-        estimator: TransversalMedian::PAPER,
+        estimator: AnyEstimator::PAPER,
         strict: false,
     };
     let long = echoes(&long(&instants), &settings, None);
@@ -100,7 +101,7 @@ fn wide(instants: &[Instant]) -> String {
 struct Table(TableWriter<Vec<u8>>);
 
 impl EchoSink for Table {
-    fn echo(&mut self, echo: &Echo<f64>) -> atm::error::Result<bool> {
+    fn echo(&mut self, echo: &AnyEcho) -> atm::error::Result<bool> {
         self.0.echo(echo).expect("memory");
         Ok(true)
     }

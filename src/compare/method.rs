@@ -7,6 +7,7 @@ use crate::{
         CELL, Centerline, CommonTangents, ConstantDepth, DirectionalMaximum, Elfes, Himm, Interleave, Intersections,
         Method, MoravecElfes, Morphology, RangeLayer, TriangulationFusion, UniformArcs, Voting,
     },
+    echo::AnyEstimator,
     error::{Error, Result},
     pipeline::Emit,
 };
@@ -82,9 +83,7 @@ pub enum Name {
 /// A run of the pipeline.
 pub(super) struct PipelineRun {
     pub(super) emit: Emit,
-    pub(super) median: TransversalMedian<f64>,
-    /// In place of the median.
-    pub(super) consensus: Option<Consensus<f64>>,
+    pub(super) estimator: AnyEstimator,
     /// Whether only these kinds are kept.
     pub(super) keep: &'static [&'static str],
 }
@@ -157,10 +156,11 @@ impl Name {
     /// How the pipeline is to run, if it is one of its estimators.
     pub(super) fn pipeline(self, options: &Options) -> Result<Option<PipelineRun>> {
         let paper = TransversalMedian { min_angle: options.min_angle, ..TransversalMedian::PAPER };
-        let run = |median| PipelineRun { emit: Emit::Settled, median, consensus: None, keep: &[] };
+        let by = |estimator| PipelineRun { emit: Emit::Settled, estimator, keep: &[] };
+        let run = |median| by(AnyEstimator::Median(median));
         let consensus = Consensus::new(options.min_angle).with_range_error(options.range_error);
         let consensus = consensus.map_err(|error| Error::Settings { message: error.to_string() })?;
-        let consensus = PipelineRun { consensus: Some(consensus), ..run(paper) };
+        let consensus = by(AnyEstimator::Consensus(consensus));
         Ok(Some(match self {
             Self::Atm => run(paper),
             Self::AtmMedianSingle => PipelineRun { keep: CROSSED, ..run(paper) },

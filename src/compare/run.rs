@@ -2,7 +2,7 @@
 
 use std::{sync::Arc, time::Instant};
 
-use atm_core::{Bounds, ConsensusEcho, Echo, Reading};
+use atm_core::{Bounds, Reading};
 
 use super::{
     method::{Name, Options, PipelineRun},
@@ -10,11 +10,12 @@ use super::{
 };
 use crate::{
     baseline::{Evidence, Findings, Mark, Method},
+    echo::AnyEcho,
     error::Result,
     eval::Estimate,
     intake::{Consumer, read},
     log::Row,
-    pipeline::{EchoSink, Settings, fuse, fuse_consensus},
+    pipeline::{EchoSink, Settings, fuse},
     summary::Summary,
 };
 
@@ -65,16 +66,12 @@ fn pipeline_outcome(name: Name, run: &PipelineRun, recording: &Recording, option
         emit: run.emit,
         history: options.history,
         bounds: Bounds::NONE,
-        estimator: run.median,
+        estimator: run.estimator,
         strict: false,
     };
     let mut echoes = Echoes { ids: recording.ids(), keep: run.keep, estimates: Vec::new(), significances: Vec::new() };
     for mut part in recording.parts() {
-        let (sensors, told) = (recording.sensors(), &mut |_| ());
-        let (_, result) = match run.consensus {
-            None => fuse(&mut part, None, sensors, &settings, &mut echoes, told),
-            Some(consensus) => fuse_consensus(consensus, &mut part, None, sensors, &settings, &mut echoes, told),
-        };
+        let (_, result) = fuse(&mut part, None, recording.sensors(), &settings, &mut echoes, &mut |_| ());
         result?;
     }
     let (estimates, significances) = (Some(echoes.estimates), Some(echoes.significances));
@@ -90,30 +87,21 @@ struct Echoes<'a> {
     significances: Vec<f64>,
 }
 
-impl Echoes<'_> {
-    /// Takes an echo of a kind, without its key, that is kept.
-    fn take(&mut self, kind: &str, (t, sensor): (i64, u16), significance: f64, estimate: Estimate) -> bool {
-        let kept = self.keep.is_empty() || self.keep.contains(&kind);
-        if kept {
-            let key = self.ids.get(usize::from(sensor)).map(|id| (t, Arc::clone(id)));
-            self.estimates.push(Estimate { key, kind: Some(Arc::from(kind)), ..estimate });
-            self.significances.push(significance);
-        }
-        kept
-    }
-}
-
 impl EchoSink for Echoes<'_> {
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        let (azimuth, range) = (Some(echo.azimuth()), Some(echo.range));
-        let estimate = Estimate { position: echo.position, key: None, azimuth, range, kind: None };
-        Ok(self.take(echo.kind.name(), (echo.t, echo.sensor), echo.significance(), estimate))
-    }
-
-    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
-        let (azimuth, range) = (Some(echo.azimuth()), Some(echo.range));
-        let estimate = Estimate { position: echo.position, key: None, azimuth, range, kind: None };
-        Ok(self.take(echo.kind.name(), (echo.t, echo.sensor), echo.significance(), estimate))
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
+        let usual = echo.usual();
+        let kept = self.keep.is_empty() || self.keep.contains(&usual.kind);
+        if kept {
+            self.estimates.push(Estimate {
+                position: usual.position,
+                key: self.ids.get(usize::from(usual.sensor)).map(|id| (usual.t, Arc::clone(id))),
+                azimuth: Some(usual.azimuth),
+                range: Some(usual.range),
+                kind: Some(Arc::from(usual.kind)),
+            });
+            self.significances.push(usual.significance);
+        }
+        Ok(kept)
     }
 
     fn flush(&mut self) -> Result<()> {

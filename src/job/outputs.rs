@@ -2,10 +2,11 @@
 
 use std::{io, sync::Arc};
 
-use atm_core::{ArcCrossing, ConsensusEcho, Echo, Isometry2, Kind, Reading, Reflector};
+use atm_core::{ArcCrossing, Isometry2, Reading};
 
 use super::FuseJob;
 use crate::{
+    echo::{AnyEcho, AnyEstimator},
     error::{Error, Result},
     log::{
         Row,
@@ -24,8 +25,7 @@ use crate::{
 
 /// One output.
 enum Written {
-    Echoes(Table<Echo<f64>>),
-    Consensus(Table<ConsensusEcho<f64>>),
+    Echoes(Table<AnyEcho>),
     Crossings(Table<ArcCrossing<f64>>),
     Recording(Box<McapSink<Output>>),
 }
@@ -34,7 +34,6 @@ impl Written {
     fn flush(&mut self) -> Result<()> {
         match self {
             Self::Echoes(table) => table.with(Behind::flush),
-            Self::Consensus(table) => table.with(Behind::flush),
             Self::Crossings(table) => table.with(Behind::flush),
             Self::Recording(recording) => recording.flush(),
         }
@@ -44,7 +43,6 @@ impl Written {
     fn commit(self) -> Result<()> {
         match self {
             Self::Echoes(table) => table.commit(),
-            Self::Consensus(table) => table.commit(),
             Self::Crossings(table) => table.commit(),
             Self::Recording(recording) => recording.finish()?.commit(),
         }
@@ -89,9 +87,7 @@ pub(super) struct Outputs {
     echoes: Option<Written>,
     crossings: Option<Written>,
     /// Kinds to write, where not all are.
-    keep: Option<Vec<Kind>>,
-    /// Kinds of the consensus to write, where not all are.
-    keep_reflectors: Option<Vec<Reflector>>,
+    keep: Option<Vec<&'static str>>,
     partials: Vec<String>,
     mounts: Vec<Isometry2<f64>>,
     /// The log is copied.
@@ -112,7 +108,7 @@ impl Outputs {
                     kind: job.schema,
                     layout: layout(settings.emit, &output),
                     contents,
-                    consensus: job.consensus.is_some(),
+                    consensus: settings.estimator.is_consensus(),
                     frames: Frames { mounts: input.mounts.clone(), ..Frames::default() },
                     history: settings.history,
                     pass_window: input.window.filter(|_| job.passes(contents)),
@@ -121,10 +117,13 @@ impl Outputs {
             }
             let ids = input.ids.iter().map(|id| &**id);
             match contents {
-                Contents::Everything if job.consensus.is_some() => {
-                    Table::new(file, TableWriter::consensus(output, ids)).map(Written::Consensus)
+                Contents::Everything => {
+                    let table = match settings.estimator {
+                        AnyEstimator::Median(_) => TableWriter::echoes(output, ids),
+                        AnyEstimator::Consensus(_) => TableWriter::consensus(output, ids),
+                    };
+                    Table::new(file, table).map(Written::Echoes)
                 }
-                Contents::Everything => Table::new(file, TableWriter::echoes(output, ids)).map(Written::Echoes),
                 Contents::Crossings => Table::new(file, TableWriter::crossings(output, ids)).map(Written::Crossings),
             }
         };
@@ -135,7 +134,6 @@ impl Outputs {
             crossings: crossings.transpose()?,
             echoes,
             keep: job.keep.clone(),
-            keep_reflectors: job.consensus.as_ref().and_then(|consensus| consensus.keep.clone()),
             partials,
             mounts: input.mounts.clone(),
             passes: job.passthrough,
@@ -209,7 +207,6 @@ impl EchoSink for Outputs {
     fn sensors(&mut self, ids: &[Arc<str>]) -> Result<()> {
         self.all().try_for_each(|written| match written {
             Written::Echoes(table) => table.with(|rows| rows.set_ids(ids)),
-            Written::Consensus(table) => table.with(|rows| rows.set_ids(ids)),
             Written::Crossings(table) => table.with(|rows| rows.set_ids(ids)),
             Written::Recording(recording) => recording.sensors(ids),
         })
@@ -226,24 +223,13 @@ impl EchoSink for Outputs {
         self.recordings().try_for_each(|recording| recording.reading(reading))
     }
 
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
+        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind())) {
             return Ok(false);
         }
         match &mut self.echoes {
             Some(Written::Echoes(table)) => table.with(|rows| rows.push(*echo)).map(|()| true),
             Some(Written::Recording(recording)) => recording.echo(echo),
-            _ => Ok(false),
-        }
-    }
-
-    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
-        if self.keep_reflectors.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
-            return Ok(false);
-        }
-        match &mut self.echoes {
-            Some(Written::Consensus(table)) => table.with(|rows| rows.push(*echo)).map(|()| true),
-            Some(Written::Recording(recording)) => recording.consensus(echo),
             _ => Ok(false),
         }
     }

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use atm_core::{ArcCrossing, ConsensusEcho, Echo};
+use atm_core::ArcCrossing;
 
-use crate::stamp;
+use crate::{echo::AnyEcho, stamp};
 
 /// The columns of an echo table, in order.
 pub const ECHO_COLUMNS: &str = "t,sensor,x,y,kind,range,azimuth,crossings,resolution,significance";
@@ -25,15 +25,9 @@ pub trait Line {
     fn write<W: Write>(&self, table: &mut TableWriter<W>) -> io::Result<()>;
 }
 
-impl Line for Echo<f64> {
+impl Line for AnyEcho {
     fn write<W: Write>(&self, table: &mut TableWriter<W>) -> io::Result<()> {
         table.echo(self)
-    }
-}
-
-impl Line for ConsensusEcho<f64> {
-    fn write<W: Write>(&self, table: &mut TableWriter<W>) -> io::Result<()> {
-        table.consensus_echo(self)
     }
 }
 
@@ -104,47 +98,33 @@ impl<W: Write> TableWriter<W> {
         self.ids = ids.into_iter().map(quoted).collect();
     }
 
-    /// Writes one echo.
-    pub fn echo(&mut self, echo: &Echo<f64>) -> io::Result<()> {
+    /// Writes one echo, with what its estimator has to say of it.
+    pub fn echo(&mut self, echo: &AnyEcho) -> io::Result<()> {
+        let usual = echo.usual();
         self.row.clear();
-        stamp::write(echo.t, &mut self.row);
-        self.id(echo.sensor);
-        self.float(echo.position.x);
-        self.float(echo.position.y);
+        stamp::write(usual.t, &mut self.row);
+        self.id(usual.sensor);
+        self.float(usual.position.x);
+        self.float(usual.position.y);
         self.row.push(b',');
-        self.row.extend_from_slice(echo.kind.name().as_bytes());
-        self.frequent(echo.range);
-        self.frequent(echo.azimuth());
-        self.count(echo.crossings);
-        self.frequent(echo.resolution);
-        self.frequent(echo.significance());
-        self.end()
-    }
-
-    /// Writes one echo of the consensus.
-    pub fn consensus_echo(&mut self, echo: &ConsensusEcho<f64>) -> io::Result<()> {
-        self.row.clear();
-        stamp::write(echo.t, &mut self.row);
-        self.id(echo.sensor);
-        self.float(echo.position.x);
-        self.float(echo.position.y);
-        self.row.push(b',');
-        self.row.extend_from_slice(echo.kind.name().as_bytes());
-        self.frequent(echo.range);
-        self.float(echo.azimuth());
-        self.count(echo.support);
-        self.float(echo.resolution);
-        self.float(echo.significance());
-        self.count(echo.support);
-        self.count(echo.against);
-        self.float(echo.sigma_azimuth);
-        self.float(echo.sigma_range);
-        match echo.normal {
-            Some(normal) => {
-                self.float(normal.x);
-                self.float(normal.y);
+        self.row.extend_from_slice(usual.kind.as_bytes());
+        self.frequent(usual.range);
+        self.frequent(usual.azimuth);
+        self.count(usual.crossings);
+        self.frequent(usual.resolution);
+        self.frequent(usual.significance);
+        if let Some(echo) = echo.consensus() {
+            self.count(echo.support);
+            self.count(echo.against);
+            self.float(echo.sigma_azimuth);
+            self.float(echo.sigma_range);
+            match echo.normal {
+                Some(normal) => {
+                    self.float(normal.x);
+                    self.float(normal.y);
+                }
+                None => self.row.extend_from_slice(b",,"),
             }
-            None => self.row.extend_from_slice(b",,"),
         }
         self.end()
     }

@@ -2,7 +2,7 @@
 //! meet cross exactly once, on the pole.
 
 use atm::core::{
-    ArcCrossing, Arrival, Beam, Bounds, Echo, Fuser, Isometry2, Kind, Limits, MinAngle, OnNone, OnTwo, Point2,
+    ArcCrossing, Arrival, Beam, Bounds, Echo, Fuser, Held, Isometry2, Kind, Limits, MinAngle, OnNone, OnTwo, Point2,
     RangeResolution, Reading, Rejected, Sink, TransversalMedian, Travel, UnitComplex, Vector2, significance,
 };
 use atm::storage::SettledSlots;
@@ -252,7 +252,7 @@ fn readings_that_leave_at_one_arrival_are_reported_in_input_order() {
 
 #[test]
 fn held_reading_takes_no_slot_and_no_echo_is_a_value() {
-    let mut latest = Drive::latest(2, Bounds::NONE.with_held_dropped(true));
+    let mut latest = Drive::latest(2, Bounds::NONE.with_held(Held::Drop));
     latest.meets(&reading(0, 0));
     for t in 1..4 {
         assert_eq!(latest.push(&reading(t, 0)).0, Ok(Arrival::Held));

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use atm::core::{
-    Beam, Bounds, Isometry2, Limits, MinAngle, OnNone, OnTwo, Point2, RangeResolution, Reading, Scalar,
+    Beam, Bounds, Held, Isometry2, Limits, MinAngle, OnNone, OnTwo, Point2, RangeResolution, Reading, Scalar,
     TransversalMedian, Travel, UnitComplex,
 };
 use nalgebra::Translation2;
@@ -106,7 +106,7 @@ impl Rules {
     }
 
     pub fn bounds<T: Float>(&self) -> Bounds<T> {
-        let mut bounds = Bounds::NONE.with_held_dropped(self.drop_held);
+        let mut bounds = Bounds::NONE.with_held(if self.drop_held { Held::Drop } else { Held::Keep });
         if let Some(nanoseconds) = self.max_age {
             bounds = bounds.with_max_age(nanoseconds);
         }

@@ -1,8 +1,8 @@
 //! Random drives of a small rig, and all that a fuser says of them.
 
 use atm::core::{
-    Arrival, Beam, Bounds, Echo, Fuser, Isometry2, Kind, Limits, MinAngle, OnNone, OnTwo, RangeResolution, Reading,
-    Rejected, Sink, TransversalMedian, Travel, UnitComplex, Vector2,
+    Arrival, Beam, Bounds, Echo, Fuser, Held, Isometry2, Kind, Limits, MinAngle, OnNone, OnTwo, RangeResolution,
+    Reading, Rejected, Sink, TransversalMedian, Travel, UnitComplex, Vector2,
 };
 use atm::storage::SettledSlots;
 use proptest::prelude::*;
@@ -148,7 +148,7 @@ pub fn drive() -> impl Strategy<Value = Drive> {
 }
 
 fn bounds_of((age, travel, step, held): (Option<u64>, Option<f64>, Option<f64>, bool)) -> Bounds<f64> {
-    let mut bounds = Bounds::NONE.with_held_dropped(held);
+    let mut bounds = Bounds::NONE.with_held(if held { Held::Drop } else { Held::Keep });
     if let Some(nanoseconds) = age {
         bounds = bounds.with_max_age(nanoseconds);
     }

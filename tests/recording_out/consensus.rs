@@ -1,7 +1,8 @@
 //! Recordings of the consensus: its fields behind the usual ones.
 
 use atm::{
-    core::{ConsensusEcho, Echo},
+    core::ConsensusEcho,
+    echo::AnyEcho,
     error::Result,
     log::mcap::write::{Options, points::KINDS as KIND_NAMES},
     pipeline::EchoSink,
@@ -17,12 +18,8 @@ use crate::{
 struct Said(Vec<ConsensusEcho<f64>>);
 
 impl EchoSink for Said {
-    fn echo(&mut self, _: &Echo<f64>) -> Result<bool> {
-        panic!("the median was not asked");
-    }
-
-    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
-        self.0.push(*echo);
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
+        self.0.push(*echo.consensus().expect("the median was not asked"));
         Ok(true)
     }
 

@@ -3,7 +3,8 @@
 use std::{collections::BTreeMap, fs, sync::Arc};
 
 use atm::{
-    core::{ArcCrossing, Bounds, Consensus, Echo, Isometry2, MinAngle, Reading, TransversalMedian},
+    core::{ArcCrossing, Bounds, Consensus, Isometry2, MinAngle, Reading},
+    echo::{AnyEcho, AnyEstimator},
     error::Result,
     log::{
         Input, Row,
@@ -29,26 +30,22 @@ pub fn nomad() -> Rig {
 
 /// Fuses a long table of the Nomad's ring into a sink.
 pub fn fuse(table: &str, emit: Emit, sink: &mut dyn EchoSink) -> Result<()> {
-    fuse_by(None, table, emit, sink)
+    fuse_by(AnyEstimator::PAPER, table, emit, sink)
 }
 
 /// The same by the consensus.
 pub fn fuse_consensus(table: &str, sink: &mut dyn EchoSink) -> Result<()> {
-    fuse_by(Some(Consensus::new(MinAngle::PAPER)), table, Emit::Settled, sink)
+    fuse_by(AnyEstimator::Consensus(Consensus::new(MinAngle::PAPER)), table, Emit::Settled, sink)
 }
 
-fn fuse_by(consensus: Option<Consensus<f64>>, table: &str, emit: Emit, sink: &mut dyn EchoSink) -> Result<()> {
+fn fuse_by(estimator: AnyEstimator, table: &str, emit: Emit, sink: &mut dyn EchoSink) -> Result<()> {
     let rig = Arc::new(nomad());
     let sensors = Defaults::default().complete(&rig).expect("the built-in rig is complete");
     let input = Input { reader: Box::new(std::io::Cursor::new(table.to_owned())), name: "log".into(), length: None };
     let mut source = CsvReadings::new(input, &TableFormat::default(), PoseUse::Needed, None, rig)?;
-    let bounds = Bounds::NONE;
-    let settings = Settings { emit, history: 10, bounds, estimator: TransversalMedian::PAPER, strict: true };
+    let settings = Settings { emit, history: 10, bounds: Bounds::NONE, estimator, strict: true };
     sink.sensors(nomad().ids())?;
-    match consensus {
-        None => pipeline::fuse(&mut source, None, &sensors, &settings, sink, &mut |_| {}).1,
-        Some(it) => pipeline::fuse_consensus(it, &mut source, None, &sensors, &settings, sink, &mut |_| {}).1,
-    }
+    pipeline::fuse(&mut source, None, &sensors, &settings, sink, &mut |_| {}).1
 }
 
 /// Options for the Nomad's ring.
@@ -75,7 +72,7 @@ pub struct Tables {
 }
 
 impl EchoSink for Tables {
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
         self.echoes.echo(echo).expect("memory takes it");
         Ok(true)
     }
@@ -180,7 +177,7 @@ impl<S: EchoSink> EchoSink for Recorded<'_, S> {
         self.sink.reading(reading)
     }
 
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
         self.sink.echo(echo)
     }
 

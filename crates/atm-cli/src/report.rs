@@ -30,7 +30,7 @@ pub fn progress(length: Option<u64>, quiet: bool) -> ProgressBar {
 /// What a run has counted, for a person.
 pub fn counts(summary: &Summary) -> String {
     let mut text = format!("readings  {} in the local map, {} without an echo\n", summary.readings, summary.no_echo);
-    let kinds: Vec<String> = summary.echoes.named().map(|(kind, count)| format!("{count} {kind}")).collect();
+    let kinds: Vec<String> = summary.echoes.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
     let _ = write!(text, "echoes    {}: {}", summary.echoes.total(), kinds.join(", "));
     if summary.written != summary.echoes.total() {
         let _ = write!(text, "; {} written", summary.written);

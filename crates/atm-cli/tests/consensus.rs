@@ -192,3 +192,12 @@ fn held_values_are_dropped_under_either_name_and_kept_by_default() {
     fuse_sample(&["--held", "keep"]).exits(0).writes(fuse_sample(&[]).exits(0).stdout);
     fuse_sample(&["--held", "drop", "--drop-held"]).exits(2);
 }
+
+#[test]
+fn a_log_without_echoes_is_counted_by_its_own_kinds() {
+    let scratch = Scratch::new();
+    let log = scratch.file("log.csv", "t,sensor,range,x,y,yaw\n0,0,inf,0,0,0\n");
+    let ran = atm(["fuse", &log, "--rig", "nomad200", "-o", "-"].iter().chain(&CONSENSUS)).exits(0);
+    assert_eq!(ran.text(), format!("{CONSENSUS_HEADER}\n"));
+    ran.says(&["0: 0 point, 0 wall, 0 center"]);
+}

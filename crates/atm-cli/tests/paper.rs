@@ -1,4 +1,4 @@
-//! The pictures of docs/paper.md are what the page's commands draw.
+//! The pictures of docs/paper.md and docs/accuracy.md are what the pages' commands draw.
 
 mod support;
 
@@ -25,11 +25,11 @@ fn arguments(line: &str) -> Vec<String> {
     line.split('\'').enumerate().flat_map(part).collect()
 }
 
-#[test]
-fn pictures_are_what_the_commands_beside_them_draw() {
-    let page = read(root().join("docs/paper.md").to_str().expect("a path in UTF-8"));
+/// Holds the pictures of a page whose names begin with `pictures` against what its commands draw.
+fn hold(page: &str, pictures: &str) {
+    let page = read(root().join(page).to_str().expect("a path in UTF-8"));
     let scratch = Scratch::new();
-    let mut pictures = BTreeMap::new();
+    let mut drawn = BTreeMap::new();
     for command in commands(&page) {
         // Files of the page are the test's own.
         let place = |word: &String| match word.rsplit_once('.') {
@@ -38,13 +38,14 @@ fn pictures_are_what_the_commands_beside_them_draw() {
         };
         let args: Vec<String> = command.iter().map(place).collect();
         atm(&args).exits(0);
-        if let Some(picture) = command.last().filter(|word| word.starts_with("docs/paper/")) {
-            pictures.insert(picture.clone(), read(&scratch.name(&picture.replace('/', "_"))));
+        if let Some(picture) = command.last().filter(|word| word.starts_with(pictures)) {
+            drawn.insert(picture.clone(), read(&scratch.name(&picture.replace('/', "_"))));
         }
     }
-    assert_eq!(pictures.len(), page.matches("](paper/").count(), "each picture has a command");
-    for (name, drawn) in pictures {
-        assert!(page.contains(&format!("]({})", name.trim_start_matches("docs/"))), "{name} is not shown");
+    let link = |picture: &str| format!("]({}", picture.trim_start_matches("docs/"));
+    assert!(!drawn.is_empty() && drawn.len() == page.matches(&link(pictures)).count(), "each picture has a command");
+    for (name, drawn) in drawn {
+        assert!(page.contains(&format!("{})", link(&name))), "{name} is not shown");
         let path = root().join(&name);
         if std::env::var_os(WRITE).is_some_and(|set| !set.is_empty()) {
             fs::write(path, drawn).expect("the picture can be written");
@@ -52,4 +53,14 @@ fn pictures_are_what_the_commands_beside_them_draw() {
             assert_same(read(path.to_str().expect("a path in UTF-8")).as_bytes(), drawn.as_bytes());
         }
     }
+}
+
+#[test]
+fn pictures_of_the_papers_claims_are_what_the_commands_beside_them_draw() {
+    hold("docs/paper.md", "docs/paper/");
+}
+
+#[test]
+fn picture_of_the_consensus_is_what_the_commands_beside_it_draw() {
+    hold("docs/accuracy.md", "docs/accuracy-doorway");
 }

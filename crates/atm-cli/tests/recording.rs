@@ -159,3 +159,30 @@ fn the_page_of_the_methods_shows_its_table_and_its_maps() {
     assert_eq!(shown, table, "scripts/methods writes it");
     assert!(fs::read(picture_place).unwrap() == picture, "scripts/methods draws it");
 }
+
+#[test]
+fn the_page_of_the_consensus_shows_what_is_drawn_of_it() {
+    let Some((log, poses)) = recording() else { return };
+    let scratch = Scratch::new();
+    let (median, consensus, drawn) =
+        (scratch.name("atm.csv"), scratch.name("consensus.csv"), scratch.name("drawn.svg"));
+    let log_of = |command| [command, log.as_str(), "--poses", poses.as_str(), "--rig", "robond8"];
+    atm(log_of("fuse").iter().chain(&["--held", "drop", "-o", &median])).exits(0);
+    let more = ["--held", "edges", "--estimator", "consensus", "--range-error", "2cm", "-o", &consensus];
+    atm(log_of("fuse").iter().chain(&more)).exits(0);
+    let page = read(root().join("docs/accuracy.md").to_str().expect("a path in UTF-8"));
+    // Its panels, as the page has them between quotes.
+    let (_, command) = page.split_once("atm draw measurement.txt").expect("the command of the picture");
+    let (command, _) = command.split_once("```").expect("its end");
+    let panels = command.split('\'').skip(1).step_by(2).flat_map(|panel| ["--panel", panel]);
+    let args =
+        log_of("draw").into_iter().chain([median.as_str(), &consensus, "--size", "1500", "-o", &drawn]).chain(panels);
+    atm(args.collect::<Vec<_>>()).exits(0);
+    let place = root().join("docs/accuracy-recording.svg");
+    let place = place.to_str().expect("a path in UTF-8");
+    if env::var_os(WRITE).is_some_and(|set| !set.is_empty()) {
+        fs::write(place, read(&drawn)).unwrap();
+        return;
+    }
+    assert_same(read(&drawn).as_bytes(), read(place).as_bytes());
+}

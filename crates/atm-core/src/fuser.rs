@@ -4,6 +4,7 @@ use nalgebra::{Isometry2, Point2, Vector2};
 
 use crate::{
     arc::{Arc, Bearing},
+    columns::Entry,
     error::Rejected,
     estimator::{Estimator, ReportedArc, TransversalMedian, Verdict},
     local_map::{Bounds, Held, LocalMap, Newcomer},
@@ -11,7 +12,7 @@ use crate::{
     pose::{Odometer, usable},
     scalar::Scalar,
     sensor::{Beam, Meaning, Range, RangeResolution},
-    storage::{Entry, SettledStorage, SnapshotStorage, Storage},
+    storage::{SettledStorage, SnapshotStorage, Storage},
 };
 
 /// One reading, with all that the fusion has to know of it.

@@ -61,6 +61,7 @@
 extern crate std;
 
 mod arc;
+mod columns;
 mod consensus;
 mod crossing;
 mod echo;
@@ -82,6 +83,7 @@ pub use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 
 pub use crate::{
     arc::{Arc, Bearing},
+    columns::{Columns, Ring},
     consensus::{Consensus, ConsensusEcho, Reflector},
     crossing::{Crossing, MinAngle, crossings},
     echo::{Echo, Kind},
@@ -94,8 +96,6 @@ pub use crate::{
     pose::{Anchor, Travel},
     scalar::Scalar,
     sensor::{Beam, Limits, Meaning, Range, RangeResolution},
-    storage::{
-        Arrays, Columns, LOG_BLOCKS, LatestArrays, Ring, SETTLED_BLOCKS, SettledStorage, SnapshotStorage, Storage,
-    },
+    storage::{Arrays, LOG_BLOCKS, LatestArrays, SETTLED_BLOCKS, SettledStorage, SnapshotStorage, Storage},
     sweep::{BLOCK, Boxes, Instructions},
 };

@@ -3,9 +3,10 @@
 use nalgebra::Vector2;
 
 use crate::{
+    columns::{Columns, Entry},
     pose::Travel,
     scalar::Scalar,
-    storage::{Columns, Entry, Storage},
+    storage::Storage,
     sweep::Boxes,
 };
 
@@ -66,12 +67,6 @@ impl<T: Scalar> Bounds<T> {
             return Err(crate::DomainError::MinStep);
         }
         Ok(Self { min_step: Some(metres), ..self })
-    }
-
-    /// A reading equal to its sensor's previous one is skipped, all without echo being equal: for rings that repeat a
-    /// held value.
-    pub const fn with_held_dropped(self, drop: bool) -> Self {
-        self.with_held(if drop { Held::Drop } else { Held::Keep })
     }
 
     /// What becomes of readings equal to their sensor's previous ones.

@@ -4,10 +4,10 @@ use core::ops::Range;
 
 use crate::{
     arc::Arc,
+    columns::{Columns, part},
     crossing::MinAngle,
     local_map::{back, is_after},
     scalar::Scalar,
-    storage::{Columns, part},
     sweep::{BLOCK, Probe, SPAN, is_near},
 };
 

@@ -1,8 +1,8 @@
 //! `atm.fuse_file`: from a log to a file, in one pass and bounded memory.
 
 use atm::{
-    core::{Beam, Bounds, Kind, MinAngle, RangeResolution, Reflector, TransversalMedian},
-    job::{ConsensusJob, FuseJob, LogJob, MAX_GAP, McapWishes},
+    core::{Beam, Bounds, MinAngle, RangeResolution, TransversalMedian},
+    job::{FuseJob, LogJob, MAX_GAP, McapWishes},
     log::{
         Input,
         csv::EmptyCell,
@@ -235,11 +235,9 @@ pub fn fuse_file<'py>(
         crossings: path("crossings", crossings)?,
         summary: path("summary", summary)?,
         keep: None,
-        consensus: None,
         schema: argument::choice("schema", schema, &schemas)?,
         passthrough,
     };
-    job.check().map_err(|error| raise::library(&error))?;
     let sensors = job.log.models().map_err(|error| raise::library(&error))?;
     let chosen = Angle {
         min_angle: quantity("min_angle", min_angle, units::angle)?,
@@ -250,6 +248,7 @@ pub fn fuse_file<'py>(
     if max_age == Some(0) {
         return Err(raise::value("max_age", "0 is not positive"));
     }
+    let choice = Choice { estimator, confidence, range_error: length("range_error", range_error)? };
     let settings = Settings {
         emit: options::emit(emit)?,
         history,
@@ -259,22 +258,15 @@ pub fn fuse_file<'py>(
             length("max_travel", max_travel)?,
             length("min_step", min_step)?,
         )?,
-        estimator: TransversalMedian {
+        estimator: choice.estimator(TransversalMedian {
             min_angle: chosen.resolve(&sensors)?,
             on_none: options::on_none(on_none)?,
             on_two: options::on_two(on_two)?,
-        },
+        })?,
         strict,
     };
-    let choice = Choice { estimator, confidence, range_error: length("range_error", range_error)? };
-    match choice.consensus(&settings.estimator)? {
-        None => job.keep = options::keep(keep, Kind::ALL, Kind::name)?,
-        Some(estimator) => {
-            let keep = options::keep(keep, Reflector::ALL, Reflector::name)?;
-            job.consensus = Some(ConsensusJob { estimator, keep });
-            job.check().map_err(|error| raise::library(&error))?;
-        }
-    }
+    job.keep = options::keep(keep, &settings.estimator)?;
+    job.check(&settings).map_err(|error| raise::library(&error))?;
     let progress = progress.map(|progress| progress.clone().unbind());
     let summary = job::run(py, &job, &settings, progress.as_ref())?;
     told(py, job.log.guesses_resolution(), &summary)

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use atm::{
-    core::{Consensus, Kind, Reflector},
+    core::Kind,
     error::{Error, Problem, Result},
     log::{Next, Row, Source},
     pipeline::{self, EchoSink, SensorModel, Settings},
@@ -19,7 +19,7 @@ use crate::{
     raise,
     readings::{Arguments, Given, Readings},
     rig::rig as rig_of,
-    table::{ConsensusEchoes, Crossings, Echoes},
+    table::{Crossings, Echoes},
 };
 
 /// Readings that are handed over at once, at most.
@@ -99,13 +99,12 @@ impl Source for ArraySource<'_, '_> {
     }
 }
 
-/// Runs the pipeline with the interpreter let go, by the consensus where there is one.
+/// Runs the pipeline with the interpreter let go.
 fn run(
     py: Python<'_>,
     readings: Readings<'_>,
     sensors: &[SensorModel],
     settings: &Settings,
-    consensus: Option<Consensus<f64>>,
     sink: &mut (impl EchoSink + Send),
 ) -> PyResult<Summary> {
     let mut watch = Watch::new();
@@ -113,11 +112,7 @@ fn run(
         readings.check(None)?;
         // The rig's sensors are known beforehand.
         let mut source = ArraySource::new(readings, &[], &mut watch);
-        let told = &mut |_| {};
-        Ok::<_, PyErr>(match consensus {
-            None => pipeline::fuse(&mut source, None, sensors, settings, sink, told),
-            Some(consensus) => pipeline::fuse_consensus(consensus, &mut source, None, sensors, settings, sink, told),
-        })
+        Ok::<_, PyErr>(pipeline::fuse(&mut source, None, sensors, settings, sink, &mut |_| {}))
     })?;
     watch.into_result()?;
     match result {
@@ -135,7 +130,7 @@ fn run(
 
 /// Says that a guessed range resolution makes many echoes near.
 pub fn warn_of_near(py: Python<'_>, summary: &Summary) -> PyResult<()> {
-    let (near, total) = (summary.echoes.get(Kind::Near), summary.echoes.total());
+    let (near, total) = (summary.echoes.get(Kind::Near.name()), summary.echoes.total());
     if near as f64 <= MANY_NEAR * total as f64 {
         return Ok(());
     }
@@ -293,18 +288,10 @@ pub fn fuse<'py>(
         choice: Choice { estimator, confidence, range_error },
     };
     let (rig, defaults, settings) = (rig_of(rig)?, options.defaults()?, options.settings()?);
-    let sensors = options::models(&rig, &defaults)?;
-    if let Some(consensus) = options.choice.consensus(&settings.estimator)? {
-        let keep = options::keep(keep, Reflector::ALL, Reflector::name)?;
-        let arguments = Arguments::new(&call, &rig, Shape::Array)?;
-        let mut echoes = ConsensusEchoes::new(&rig, arguments.clock(), keep);
-        run(py, arguments.readings(), &sensors, &settings, Some(consensus), &mut echoes)?;
-        return echoes.into_array(py);
-    }
-    let keep = options::keep(keep, Kind::ALL, Kind::name)?;
+    let keep = options::keep(keep, &settings.estimator)?;
     let arguments = Arguments::new(&call, &rig, Shape::Array)?;
-    let mut echoes = Echoes::new(&rig, arguments.clock(), keep, arguments.readings().len());
-    let summary = run(py, arguments.readings(), &sensors, &settings, None, &mut echoes)?;
+    let mut echoes = Echoes::new(&rig, arguments.clock(), &settings.estimator, keep, arguments.readings().len());
+    let summary = run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut echoes)?;
     if defaults.guesses_resolution(&rig) {
         warn_of_near(py, &summary)?;
     }
@@ -385,6 +372,6 @@ pub fn crossings<'py>(
     let (rig, defaults, settings) = (rig_of(rig)?, options.defaults()?, options.settings()?);
     let arguments = Arguments::new(&call, &rig, Shape::Array)?;
     let mut crossings = Crossings::new(&rig, arguments.clock());
-    run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, None, &mut crossings)?;
+    run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut crossings)?;
     crossings.into_array(py)
 }

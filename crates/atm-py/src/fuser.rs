@@ -1,9 +1,10 @@
-//! `atm.Fuser` and `atm.Echo`: reading by reading.
+//! `atm.Fuser`: reading by reading.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use atm::{
-    core::{Consensus, ConsensusEcho, Echo, Fuser, Rejected, Sink},
+    core::{Consensus, Fuser, Rejected, Sink},
+    echo::{AnyEcho, AnyEstimator},
     log::Row,
     pipeline::{self, Emit, SensorModel},
     rig::Rig,
@@ -12,235 +13,26 @@ use atm::{
 use pyo3::{prelude::*, types::PyList};
 
 use crate::{
-    argument::{self, named},
+    argument::named,
     column::Shape,
+    echo::PyEcho,
     interrupt::Watch,
     options::{self, Choice, Options},
     raise,
     readings::{Arguments, Given, Readings},
     rig::rig as rig_of,
-    time::{Clock, seconds},
+    time::Clock,
 };
 
 /// Readings between two looks at Python's signals.
 const BATCH: usize = 1024;
 
-/// A time as Python has it.
-#[derive(Debug, Clone, Copy, PartialEq, IntoPyObject)]
-pub enum Time {
-    /// Seconds.
-    Seconds(f64),
-    /// Nanoseconds.
-    Nanoseconds(i64),
-}
-
-/// An echo of either estimator.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum AnyEcho {
-    Median(Echo<f64>),
-    Consensus(ConsensusEcho<f64>),
-}
-
-/// Takes the same field of either.
-macro_rules! of_either {
-    ($echo:expr, $name:ident => $value:expr) => {
-        match &$echo {
-            AnyEcho::Median($name) => $value,
-            AnyEcho::Consensus($name) => $value,
-        }
-    };
-}
-
-impl AnyEcho {
-    const fn consensus(&self) -> Option<&ConsensusEcho<f64>> {
-        match self {
-            Self::Median(_) => None,
-            Self::Consensus(echo) => Some(echo),
-        }
-    }
-
-    fn normal(&self) -> Option<[f64; 2]> {
-        self.consensus()?.normal.map(|normal| [normal.x, normal.y])
-    }
-}
-
-/// One echo: a point on one arc, with how it was found.
-///
-/// Attributes as the fields of :func:`fuse`; what only the consensus says is None in echoes of the median. Never changed; two echoes are equal where all of their fields are.
-///
-/// Examples
-/// --------
-/// >>> import atm
-/// >>> fuser = atm.Fuser(atm.Rig.ring(count=1, radius=0.0, range_resolution=0.01), emit="latest")
-/// >>> fuser.push(0.0, "0", 2.0, 0.0, 0.0, 0.0)
-/// [Echo(t=0.0, sensor='0', x=2.0, y=0.0, kind='center', range=2.0, azimuth=0.0, crossings=0, resolution=0.7853981633974483, significance=1.0)]
-#[pyclass(frozen, module = "atm", name = "Echo")]
-#[derive(Debug)]
-pub struct PyEcho {
-    echo: AnyEcho,
-    clock: Clock,
-    rig: Arc<Rig>,
-}
-
-#[pymethods]
-impl PyEcho {
-    /// The reading's own time: float seconds or int nanoseconds, as it was given.
-    #[getter]
-    fn t(&self) -> Time {
-        match self.clock {
-            Clock::Seconds => Time::Seconds(seconds(of_either!(self.echo, echo => echo.t))),
-            Clock::Nanoseconds => Time::Nanoseconds(of_either!(self.echo, echo => echo.t)),
-        }
-    }
-
-    /// The sensor's id.
-    #[getter]
-    fn sensor(&self) -> &str {
-        let sensor = of_either!(self.echo, echo => echo.sensor);
-        self.rig.sensors().get(usize::from(sensor)).map_or("", |sensor| sensor.id())
-    }
-
-    /// Where it is in the fixed frame, in metres.
-    #[getter]
-    fn x(&self) -> f64 {
-        of_either!(self.echo, echo => echo.position.x)
-    }
-
-    /// Where it is in the fixed frame, in metres.
-    #[getter]
-    fn y(&self) -> f64 {
-        of_either!(self.echo, echo => echo.position.y)
-    }
-
-    /// How it was found: "median", "single", "center", "near" or "pair"; by the consensus "point", "wall" or "center".
-    #[getter]
-    fn kind(&self) -> &'static str {
-        of_either!(self.echo, echo => echo.kind.name())
-    }
-
-    /// The reading, in metres.
-    #[getter]
-    fn range(&self) -> f64 {
-        of_either!(self.echo, echo => echo.range)
-    }
-
-    /// Its direction from the boresight, in radians, within half the beam (Sec. III-B).
-    #[getter]
-    fn azimuth(&self) -> f64 {
-        of_either!(self.echo, echo => echo.azimuth())
-    }
-
-    /// Transversal crossings on its arc; by the consensus the readings that agree with it.
-    #[getter]
-    fn crossings(&self) -> u32 {
-        match &self.echo {
-            AnyEcho::Median(echo) => echo.crossings,
-            AnyEcho::Consensus(echo) => echo.support,
-        }
-    }
-
-    /// Length along the arc in which it lies, in metres (Sec. IV-B).
-    #[getter]
-    fn resolution(&self) -> f64 {
-        of_either!(self.echo, echo => echo.resolution)
-    }
-
-    /// Equation (1): the chance that its crossings fell there by accident, or 1 less the consensus's confidence; 1 for center and near.
-    #[getter]
-    fn significance(&self) -> f64 {
-        of_either!(self.echo, echo => echo.significance())
-    }
-
-    /// Readings that agree with it, by the consensus.
-    #[getter]
-    fn support(&self) -> Option<u32> {
-        self.echo.consensus().map(|echo| echo.support)
-    }
-
-    /// Readings that look there and report clearly farther, or nothing, by the consensus.
-    #[getter]
-    fn against(&self) -> Option<u32> {
-        self.echo.consensus().map(|echo| echo.against)
-    }
-
-    /// Standard deviation of the azimuth, in radians, by the consensus.
-    #[getter]
-    fn sigma_azimuth(&self) -> Option<f64> {
-        self.echo.consensus().map(|echo| echo.sigma_azimuth)
-    }
-
-    /// Standard deviation of the distance from the sensor, in metres, by the consensus.
-    #[getter]
-    fn sigma_range(&self) -> Option<f64> {
-        self.echo.consensus().map(|echo| echo.sigma_range)
-    }
-
-    /// A wall's normal, a unit vector towards the sensor; None but for walls.
-    #[getter]
-    fn normal_x(&self) -> Option<f64> {
-        self.echo.normal().map(|[x, _]| x)
-    }
-
-    /// A wall's normal, a unit vector towards the sensor; None but for walls.
-    #[getter]
-    fn normal_y(&self) -> Option<f64> {
-        self.echo.normal().map(|[_, y]| y)
-    }
-
-    fn __repr__(&self) -> String {
-        let t = match self.t() {
-            Time::Seconds(t) => format!("{t:?}"),
-            Time::Nanoseconds(t) => t.to_string(),
-        };
-        format!(
-            "Echo(t={t}, sensor='{}', x={:?}, y={:?}, kind='{}', range={:?}, azimuth={:?}, crossings={}, resolution={:?}, \
-             significance={:?}{})",
-            self.sensor(),
-            self.x(),
-            self.y(),
-            self.kind(),
-            self.range(),
-            self.azimuth(),
-            self.crossings(),
-            self.resolution(),
-            self.significance(),
-            self.words_of_the_consensus(),
-        )
-    }
-
-    fn __eq__(&self, other: &Self) -> bool {
-        self.echo == other.echo && self.clock == other.clock && self.sensor() == other.sensor()
-    }
-
-    fn __hash__(&self) -> u64 {
-        argument::hash(&self.__repr__())
-    }
-}
-
-impl PyEcho {
-    /// What the consensus says besides, for the representation.
-    fn words_of_the_consensus(&self) -> String {
-        let Some(echo) = self.echo.consensus() else { return String::new() };
-        let normal = self.echo.normal().map(|[x, y]| format!(", normal_x={x:?}, normal_y={y:?}")).unwrap_or_default();
-        format!(
-            ", support={}, against={}, sigma_azimuth={:?}, sigma_range={:?}{normal}",
-            echo.support, echo.against, echo.sigma_azimuth, echo.sigma_range
-        )
-    }
-}
-
 /// Echoes as they come.
 struct Found<'a>(&'a mut Vec<AnyEcho>);
 
-impl Sink<f64, Echo<f64>> for Found<'_> {
-    fn echo(&mut self, echo: &Echo<f64>) {
-        self.0.push(AnyEcho::Median(*echo));
-    }
-}
-
-impl Sink<f64, ConsensusEcho<f64>> for Found<'_> {
-    fn echo(&mut self, echo: &ConsensusEcho<f64>) {
-        self.0.push(AnyEcho::Consensus(*echo));
+impl<E: Copy + Into<AnyEcho>> Sink<f64, E> for Found<'_> {
+    fn echo(&mut self, echo: &E) {
+        self.0.push((*echo).into());
     }
 }
 
@@ -357,7 +149,7 @@ impl PyFuser {
     }
 
     fn list<'py>(&self, py: Python<'py>, echoes: Vec<AnyEcho>, clock: Clock) -> PyResult<Bound<'py, PyList>> {
-        let echoes = echoes.into_iter().map(|echo| PyEcho { echo, clock, rig: Arc::clone(&self.rig) });
+        let echoes = echoes.into_iter().map(|echo| PyEcho::new(echo, clock, Arc::clone(&self.rig)));
         PyList::new(py, echoes.map(|echo| Py::new(py, echo)).collect::<PyResult<Vec<_>>>()?)
     }
 
@@ -431,22 +223,19 @@ impl PyFuser {
         };
         let (settings, sensors) = (options.settings()?, options::models(&rig, &options.defaults()?)?);
         let too_large = |error| raise::value("history", error);
-        let (median, bounds, count) = (settings.estimator, settings.bounds, sensors.len());
-        let consensus = options.choice.consensus(&median)?;
-        let engine = match settings.emit {
-            Emit::Latest => {
-                let storage = LatestSlots::new(count, history).map_err(too_large)?;
-                match consensus {
-                    None => Engine::Latest(Fuser::latest(median, bounds, storage)),
-                    Some(consensus) => Engine::LatestConsensus(Fuser::latest(consensus, bounds, storage)),
-                }
+        let (bounds, count) = (settings.bounds, sensors.len());
+        let latest = || LatestSlots::new(count, history).map_err(too_large);
+        let settled = || SettledSlots::new(count, history).map_err(too_large);
+        let engine = match (settings.emit, settings.estimator) {
+            (Emit::Latest, AnyEstimator::Median(median)) => Engine::Latest(Fuser::latest(median, bounds, latest()?)),
+            (Emit::Settled, AnyEstimator::Median(median)) => {
+                Engine::Settled(Fuser::settled(median, bounds, settled()?))
             }
-            Emit::Settled => {
-                let storage = SettledSlots::new(count, history).map_err(too_large)?;
-                match consensus {
-                    None => Engine::Settled(Fuser::settled(median, bounds, storage)),
-                    Some(consensus) => Engine::SettledConsensus(Fuser::settled(consensus, bounds, storage)),
-                }
+            (Emit::Latest, AnyEstimator::Consensus(consensus)) => {
+                Engine::LatestConsensus(Fuser::latest(consensus, bounds, latest()?))
+            }
+            (Emit::Settled, AnyEstimator::Consensus(consensus)) => {
+                Engine::SettledConsensus(Fuser::settled(consensus, bounds, settled()?))
             }
         };
         let state = State { engine, latest: None, clock: None, row: Row::default() };

@@ -5,6 +5,7 @@
 
 mod argument;
 mod column;
+mod echo;
 mod file;
 mod fuse;
 mod fuser;
@@ -39,9 +40,10 @@ mod _atm {
     #[pymodule_export]
     use super::{
         _main,
+        echo::PyEcho,
         file::fuse_file,
         fuse::{crossings, fuse},
-        fuser::{PyEcho, PyFuser},
+        fuser::PyFuser,
         judge::{compare, evaluate},
         plan::plan,
         rig::{_restore_rig, _restore_sensor, PyRig, PySensor},

@@ -2,6 +2,7 @@
 
 use atm::{
     core::{Beam, Bounds, Consensus, Held, MinAngle, OnNone, OnTwo, RangeResolution, TransversalMedian, Travel},
+    echo::AnyEstimator,
     pipeline::{Defaults, Emit, SensorModel, Settings},
     rig::Rig,
     storage::LatestSlots,
@@ -39,8 +40,8 @@ impl Choice<'_> {
     /// The median.
     pub const ATM: Self = Self { estimator: "atm", confidence: None, range_error: None };
 
-    /// The consensus, where it takes the place of the median of the settings.
-    pub fn consensus(&self, median: &TransversalMedian<f64>) -> PyResult<Option<Consensus<f64>>> {
+    /// The estimator: the median, or the consensus in its place.
+    pub fn estimator(&self, median: TransversalMedian<f64>) -> PyResult<AnyEstimator> {
         let chosen = argument::choice("estimator", self.estimator, &[("atm", false), ("consensus", true)])?;
         let options = [
             (chosen && median.on_none != OnNone::Center, "on_none"),
@@ -52,7 +53,7 @@ impl Choice<'_> {
             return Err(raise::value(name, format_args!("says nothing to the estimator {}", self.estimator)));
         }
         if !chosen {
-            return Ok(None);
+            return Ok(AnyEstimator::Median(median));
         }
         let mut consensus = Consensus::new(median.min_angle);
         if let Some(confidence) = self.confidence {
@@ -61,7 +62,8 @@ impl Choice<'_> {
         }
         let metres = self.range_error.unwrap_or(0.0);
         let told = consensus.with_range_error(metres);
-        told.map(Some).map_err(|error| raise::value("range_error", format_args!("{metres} m: {error}")))
+        told.map(AnyEstimator::Consensus)
+            .map_err(|error| raise::value("range_error", format_args!("{metres} m: {error}")))
     }
 }
 
@@ -77,11 +79,11 @@ impl Options<'_> {
             emit: emit(self.emit)?,
             history: self.history,
             bounds: self.bounds()?,
-            estimator: TransversalMedian {
+            estimator: self.choice.estimator(TransversalMedian {
                 min_angle: min_angle(self.min_angle)?,
                 on_none: on_none(self.on_none)?,
                 on_two: on_two(self.on_two)?,
-            },
+            })?,
             // Everything was checked: what can't be used all the same must not be lost silently.
             strict: true,
         })
@@ -172,12 +174,8 @@ pub fn on_two(word: &str) -> PyResult<OnTwo> {
     argument::choice("on_two", word, &[("drop", OnTwo::Drop), ("center", OnTwo::Center), ("mean", OnTwo::Mean)])
 }
 
-/// The kinds of one estimator to keep: a list of words, or one text with commas between them.
-pub fn keep<K: Copy, const N: usize>(
-    value: Option<&Bound<'_, PyAny>>,
-    all: [K; N],
-    name: fn(K) -> &'static str,
-) -> PyResult<Option<Vec<K>>> {
+/// The kinds of an estimator's echoes to keep: a list of words, or one text with commas between them.
+pub fn keep(value: Option<&Bound<'_, PyAny>>, estimator: &AnyEstimator) -> PyResult<Option<Vec<&'static str>>> {
     let Some(value) = value else { return Ok(None) };
     let words: Vec<String> = if value.is_instance_of::<PyString>() {
         value.extract::<String>()?.split(',').map(|word| word.trim().to_owned()).collect()
@@ -192,7 +190,7 @@ pub fn keep<K: Copy, const N: usize>(
         };
         items.enumerate().map(word).collect::<PyResult<_>>()?
     };
-    let kinds = all.map(|kind| (name(kind), kind));
+    let kinds: Vec<(&str, &'static str)> = estimator.kinds().iter().map(|kind| (*kind, *kind)).collect();
     words.iter().map(|word| argument::choice("keep", word, &kinds)).collect::<PyResult<_>>().map(Some)
 }
 

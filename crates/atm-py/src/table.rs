@@ -3,7 +3,8 @@
 use std::iter;
 
 use atm::{
-    core::{ArcCrossing, ConsensusEcho, Echo, Kind, Reflector},
+    core::ArcCrossing,
+    echo::{AnyEcho, AnyEstimator},
     error::Result,
     log::truth::{Cause, TruthPoint},
     pipeline::EchoSink,
@@ -133,106 +134,70 @@ enum Type {
     Count,
 }
 
-/// The echoes of a run by the median.
+/// The echoes of a run.
 pub struct Echoes {
     rows: Rows,
-    kinds: [Vec<u8>; Kind::ALL.len()],
+    /// The words for kinds, and how the array has them.
+    kinds: Vec<(&'static str, Vec<u8>)>,
     /// Kinds to keep; all where there are none given.
-    keep: Option<Vec<Kind>>,
+    keep: Option<Vec<&'static str>>,
+    is_consensus: bool,
 }
 
 impl Echoes {
-    /// An empty table, with room for the echoes of `readings`.
-    pub fn new(rig: &Rig, clock: Clock, keep: Option<Vec<Kind>>, readings: usize) -> Self {
+    /// An empty table of the estimator's echoes, with room for those of `readings`.
+    pub fn new(
+        rig: &Rig,
+        clock: Clock,
+        estimator: &AnyEstimator,
+        keep: Option<Vec<&'static str>>,
+        readings: usize,
+    ) -> Self {
         let mut rows = Rows::new(rig, clock);
+        let is_consensus = estimator.is_consensus();
         // Where only some kinds are kept, nobody knows how many there will be.
         if keep.is_none() {
-            rows.reserve(readings, ECHO_NUMBERS);
+            rows.reserve(readings, ECHO_NUMBERS + if is_consensus { CONSENSUS_COLUMNS.len() } else { 0 });
         }
-        Self { rows, kinds: Kind::ALL.map(|kind| wide(kind.name(), KIND_WIDTH)), keep }
+        let kinds = estimator.kinds().iter().map(|kind| (*kind, wide(kind, KIND_WIDTH))).collect();
+        Self { rows, kinds, keep, is_consensus }
     }
 
     /// The table as numpy has it.
     pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        self.rows.into_array(py, &ECHO_COLUMNS)
-    }
-}
-
-impl EchoSink for Echoes {
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
-            return Ok(false);
-        }
-        let rows = &mut self.rows;
-        rows.time(echo.t);
-        rows.id(echo.sensor);
-        rows.float(echo.position.x);
-        rows.float(echo.position.y);
-        if let Some((_, kind)) = Kind::ALL.into_iter().zip(&self.kinds).find(|(kind, _)| *kind == echo.kind) {
-            rows.bytes.extend_from_slice(kind);
-        }
-        rows.float(echo.range);
-        rows.float(echo.azimuth());
-        rows.count(echo.crossings);
-        rows.float(echo.resolution);
-        rows.float(echo.significance());
-        Ok(true)
-    }
-
-    fn flush(&mut self) -> Result<()> {
-        Ok(())
-    }
-}
-
-/// The echoes of a run by the consensus.
-pub struct ConsensusEchoes {
-    rows: Rows,
-    kinds: [Vec<u8>; Reflector::ALL.len()],
-    /// Kinds to keep; all where there are none given.
-    keep: Option<Vec<Reflector>>,
-}
-
-impl ConsensusEchoes {
-    /// An empty table.
-    pub fn new(rig: &Rig, clock: Clock, keep: Option<Vec<Reflector>>) -> Self {
-        Self { rows: Rows::new(rig, clock), kinds: Reflector::ALL.map(|kind| wide(kind.name(), KIND_WIDTH)), keep }
-    }
-
-    /// The table as numpy has it.
-    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        let columns: Vec<(&str, Type)> = ECHO_COLUMNS.into_iter().chain(CONSENSUS_COLUMNS).collect();
+        let more: &[(&str, Type)] = if self.is_consensus { &CONSENSUS_COLUMNS } else { &[] };
+        let columns: Vec<(&str, Type)> = ECHO_COLUMNS.iter().chain(more).copied().collect();
         self.rows.into_array(py, &columns)
     }
 }
 
-impl EchoSink for ConsensusEchoes {
-    fn echo(&mut self, _echo: &Echo<f64>) -> Result<bool> {
-        Ok(false)
-    }
-
-    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
-        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&echo.kind)) {
+impl EchoSink for Echoes {
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
+        let usual = echo.usual();
+        if self.keep.as_ref().is_some_and(|keep| !keep.contains(&usual.kind)) {
             return Ok(false);
         }
         let rows = &mut self.rows;
-        rows.time(echo.t);
-        rows.id(echo.sensor);
-        rows.float(echo.position.x);
-        rows.float(echo.position.y);
-        if let Some((_, kind)) = Reflector::ALL.into_iter().zip(&self.kinds).find(|(kind, _)| *kind == echo.kind) {
+        rows.time(usual.t);
+        rows.id(usual.sensor);
+        rows.float(usual.position.x);
+        rows.float(usual.position.y);
+        if let Some((_, kind)) = self.kinds.iter().find(|(kind, _)| *kind == usual.kind) {
             rows.bytes.extend_from_slice(kind);
         }
-        rows.float(echo.range);
-        rows.float(echo.azimuth());
-        rows.count(echo.support);
-        rows.float(echo.resolution);
-        rows.float(echo.significance());
-        rows.count(echo.support);
-        rows.count(echo.against);
-        rows.float(echo.sigma_azimuth);
-        rows.float(echo.sigma_range);
-        for component in echo.normal.map_or([f64::NAN; 2], |normal| [normal.x, normal.y]) {
-            rows.float(component);
+        rows.float(usual.range);
+        rows.float(usual.azimuth);
+        rows.count(usual.crossings);
+        rows.float(usual.resolution);
+        rows.float(usual.significance);
+        if let Some(echo) = echo.consensus() {
+            rows.count(echo.support);
+            rows.count(echo.against);
+            rows.float(echo.sigma_azimuth);
+            rows.float(echo.sigma_range);
+            for component in echo.normal.map_or([f64::NAN; 2], |normal| [normal.x, normal.y]) {
+                rows.float(component);
+            }
         }
         Ok(true)
     }
@@ -268,7 +233,7 @@ impl Crossings {
 }
 
 impl EchoSink for Crossings {
-    fn echo(&mut self, _echo: &Echo<f64>) -> Result<bool> {
+    fn echo(&mut self, _echo: &AnyEcho) -> Result<bool> {
         Ok(false)
     }
 

@@ -5,6 +5,7 @@ use atm_core::{
 };
 
 use super::*;
+use crate::echo::AnyEcho;
 
 /// What was written, for whoever looks; after `room` bytes there is no more of it.
 #[derive(Clone)]
@@ -39,7 +40,7 @@ impl Write for Shared {
 }
 
 /// Echoes that differ in time and place.
-fn echoes(count: usize) -> Vec<Echo<f64>> {
+fn echoes(count: usize) -> Vec<AnyEcho> {
     let mut fuser = Fuser::latest(TransversalMedian::PAPER, Bounds::NONE, LatestArrays::<f64, 1, 1>::new());
     let mut all = Vec::new();
     for index in 0..count {
@@ -52,18 +53,18 @@ fn echoes(count: usize) -> Vec<Echo<f64>> {
             beam: Beam::new(0.4).unwrap(),
             range_resolution: RangeResolution::new(0.01).unwrap(),
         };
-        fuser.push(&reading, &mut |echo: &Echo<f64>| all.push(*echo)).unwrap();
+        fuser.push(&reading, &mut |echo: &Echo<f64>| all.push((*echo).into())).unwrap();
     }
     all
 }
 
-fn at_once(echoes: &[Echo<f64>]) -> String {
+fn at_once(echoes: &[AnyEcho]) -> String {
     let mut table = TableWriter::echoes(Vec::new(), ["left"]).unwrap();
     echoes.iter().try_for_each(|echo| table.echo(echo)).unwrap();
     String::from_utf8(table.into_inner()).unwrap()
 }
 
-fn behind(out: &Shared) -> Behind<Echo<f64>, Shared> {
+fn behind(out: &Shared) -> Behind<AnyEcho, Shared> {
     Behind::new(TableWriter::echoes(out.clone(), ["left"]).unwrap()).unwrap()
 }
 

@@ -46,7 +46,7 @@ fn written(ids: &[&str]) -> (Vec<u8>, Vec<Echo<f64>>) {
         fuser.push(&reading, &mut |echo: &Echo<f64>| echoes.push(*echo)).unwrap();
     }
     let mut table = TableWriter::echoes(Vec::new(), ids.iter().copied()).unwrap();
-    echoes.iter().for_each(|echo| table.echo(echo).unwrap());
+    echoes.iter().for_each(|echo| table.echo(&(*echo).into()).unwrap());
     (table.into_inner(), echoes)
 }
 

@@ -1,7 +1,8 @@
 use std::{num::NonZeroUsize, path::PathBuf};
 
 use atm::{
-    core::{Bounds, Consensus, DomainError, Held, MinAngle, OnNone, OnTwo, RangeResolution, Travel},
+    core::{Bounds, Consensus, DomainError, Held, MinAngle, OnNone, OnTwo, RangeResolution, TransversalMedian, Travel},
+    echo::AnyEstimator,
     log::mcap::write::SchemaKind,
 };
 use clap::{Args, ValueEnum};
@@ -195,16 +196,17 @@ impl From<TwoOption> for OnTwo {
 }
 
 impl Fuse {
-    /// The consensus for a wanted angle, if that is the estimator.
-    pub fn consensus(&self, min_angle: MinAngle<f64>) -> Result<Option<Consensus<f64>>, DomainError> {
-        if self.estimator != EstimatorOption::Consensus {
-            return Ok(None);
+    /// The estimator, for the smallest angle of crossings or the resolution that goes with it.
+    pub fn estimator(&self, min_angle: MinAngle<f64>) -> Result<AnyEstimator, DomainError> {
+        if self.estimator == EstimatorOption::Atm {
+            let (on_none, on_two) = (self.on_none.into(), self.on_two.into());
+            return Ok(AnyEstimator::Median(TransversalMedian { min_angle, on_none, on_two }));
         }
         let mut consensus = Consensus::new(min_angle);
         if let Some(confidence) = self.confidence {
             consensus = consensus.with_min_confidence(confidence)?;
         }
-        consensus.with_range_error(self.range_error.unwrap_or(0.0)).map(Some)
+        consensus.with_range_error(self.range_error.unwrap_or(0.0)).map(AnyEstimator::Consensus)
     }
 
     /// The bounds on the local map.

@@ -16,7 +16,7 @@ pub use self::{
     compare::Compare,
     draw::{Draw, PanelSpec},
     eval::Eval,
-    fuse::{Emit, EstimatorOption, Fuse, NoneOption, TwoOption},
+    fuse::{Emit, Fuse, NoneOption, TwoOption},
     info::Info,
     plan::Plan,
     simulate::Simulate,

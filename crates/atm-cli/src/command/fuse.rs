@@ -2,15 +2,16 @@
 mod fleet;
 
 use atm::{
-    core::{DomainError, Kind, MinAngle, Reflector, TransversalMedian},
-    job::{ConsensusJob, Ended, FuseJob, LogJob},
+    core::{DomainError, Kind, MinAngle},
+    echo::AnyEstimator,
+    job::{Ended, FuseJob, LogJob},
     pipeline::{self, Emit, SensorModel, Settings},
     summary::Summary,
 };
 
 use crate::{
     Failure, Outcome,
-    args::{self, EstimatorOption, Fuse, NoneOption, TwoOption},
+    args::{self, Fuse, NoneOption, TwoOption},
     command, interrupt, is_reader_gone, report,
 };
 
@@ -19,16 +20,14 @@ const MANY_NEAR: f64 = 0.2;
 
 /// Runs the command.
 pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
-    check_estimator(args)?;
     if let Some(directory) = &args.out_dir {
         return fleet::run(args, directory);
     }
     let [input] = &args.inputs[..] else {
         return Err(Failure::Usage("several logs are fused into a directory: name it with --out-dir".into()));
     };
-    let mut job = job(args, input, args.output.clone())?;
+    let job = job(args, input, args.output.clone())?;
     let settings = settings(args, &job.log.models()?)?;
-    job.consensus = consensus(args, &settings)?;
     let mut bar = None;
     let mut progress = |bytes, length| {
         bar.get_or_insert_with(|| report::progress(length, args.quiet)).set_position(bytes);
@@ -54,8 +53,7 @@ pub(super) fn job(args: &Fuse, input: &str, output: String) -> Result<FuseJob, F
         to: args.to.map(Into::into),
         crossings: args.crossings.clone(),
         summary: args.summary.clone(),
-        keep: kept(args, Kind::ALL, Kind::name),
-        consensus: None,
+        keep: (!args.keep.is_empty()).then(|| args.keep.clone()),
         schema: args.schema.into(),
         passthrough: args.passthrough,
     })
@@ -80,37 +78,21 @@ pub(super) fn said(
     (words, result.map(|()| outcome).map_err(|error| command::unfinished(error, "fused", &partials)))
 }
 
-/// The kinds of one estimator that are to be written, where not all are.
-fn kept<K: Copy>(args: &Fuse, all: impl IntoIterator<Item = K>, name: impl Fn(K) -> &'static str) -> Option<Vec<K>> {
-    (!args.keep.is_empty()).then(|| all.into_iter().filter(|kind| args.keep.contains(&name(*kind))).collect())
-}
-
-/// The consensus, if that is the estimator.
-pub(super) fn consensus(args: &Fuse, settings: &Settings) -> Result<Option<ConsensusJob>, Failure> {
-    let keep = kept(args, Reflector::ALL, Reflector::name);
-    let estimator = args.consensus(settings.estimator.min_angle).map_err(usage)?;
-    Ok(estimator.map(|estimator| ConsensusJob { estimator, keep }))
-}
-
 /// Refuses options that belong to the other estimator.
-fn check_estimator(args: &Fuse) -> Result<(), Failure> {
-    let consensus = args.estimator == EstimatorOption::Consensus;
+fn check_estimator(args: &Fuse, estimator: &AnyEstimator) -> Result<(), Failure> {
+    let consensus = estimator.is_consensus();
     let options = [
         (consensus && args.on_none != NoneOption::Center, "--on-none"),
         (consensus && args.on_two != TwoOption::Drop, "--on-two"),
         (!consensus && args.confidence.is_some(), "--confidence"),
         (!consensus && args.range_error.is_some(), "--range-error"),
     ];
-    let estimator = if consensus { "consensus" } else { "atm" };
+    let name = if consensus { "consensus" } else { "atm" };
     if let Some((_, option)) = options.into_iter().find(|(given, _)| *given) {
-        return Err(Failure::Usage(format!("{option} says nothing to --estimator {estimator}")));
+        return Err(Failure::Usage(format!("{option} says nothing to --estimator {name}")));
     }
-    let is_its_own = |kind: &&str| match consensus {
-        true => Reflector::ALL.iter().any(|own| own.name() == *kind),
-        false => Kind::ALL.iter().any(|own| own.name() == *kind),
-    };
-    match args.keep.iter().find(|kind| !is_its_own(kind)) {
-        Some(kind) => Err(Failure::Usage(format!("--keep {kind}: --estimator {estimator} gives no such kind"))),
+    match args.keep.iter().find(|kind| !estimator.kinds().contains(kind)) {
+        Some(kind) => Err(Failure::Usage(format!("--keep {kind}: --estimator {name} gives no such kind"))),
         None => Ok(()),
     }
 }
@@ -127,6 +109,8 @@ pub(super) fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings,
         }
         _ => MinAngle::PAPER,
     };
+    let estimator = args.estimator(min_angle).map_err(usage)?;
+    check_estimator(args, &estimator)?;
     Ok(Settings {
         emit: match args.emit {
             args::Emit::Settled => Emit::Settled,
@@ -134,7 +118,7 @@ pub(super) fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings,
         },
         history: args.history,
         bounds: args.bounds().map_err(usage)?,
-        estimator: TransversalMedian { min_angle, on_none: args.on_none.into(), on_two: args.on_two.into() },
+        estimator,
         strict: args.strict,
     })
 }
@@ -147,7 +131,7 @@ fn counted(args: &Fuse, pose_source: Option<&str>, summary: &Summary, guessed: b
         words.push(report::counts(summary));
     }
     words.extend(report::unusable(&summary.dropped));
-    let (near, total) = (summary.echoes.get(Kind::Near), summary.echoes.total());
+    let (near, total) = (summary.echoes.get(Kind::Near.name()), summary.echoes.total());
     if guessed && near as f64 > MANY_NEAR * total as f64 {
         words.push(format!(
             "warning: {near} of {total} echoes are near; a range resolution of 1in was assumed, say --range-resolution if \

@@ -4,8 +4,8 @@ use nalgebra::{Point2, Vector2};
 
 use crate::{
     arc::{cross, dot},
+    columns::Columns,
     scalar::Scalar,
-    storage::Columns,
 };
 
 /// What a witness says of a supposed reflector.

@@ -4,7 +4,7 @@ use nalgebra::Isometry2;
 use proptest::{prelude::*, strategy::ValueTree};
 
 use super::*;
-use crate::{Beam, crossings, storage::part};
+use crate::{Beam, columns::part, crossings};
 
 /// Columns with their boxes, filled slot by slot.
 struct Map<T> {

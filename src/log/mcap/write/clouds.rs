@@ -1,77 +1,41 @@
 //! Echoes and crossings as the points of clouds.
 
-use atm_core::{ArcCrossing, ConsensusEcho, Echo, Point2};
+use atm_core::ArcCrossing;
 
 use super::{
     content::Color,
     points::{ALIGNMENT, kind_number},
     sweep::MOST_POINTS,
 };
+use crate::echo::AnyEcho;
 
-/// An echo of either estimator.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum AnyEcho {
-    Median(Echo<f64>),
-    Consensus(ConsensusEcho<f64>),
+/// Colours that people with any colour vision tell apart (Okabe and Ito, "Color Universal Design"): blue is sharp, orange is not.
+pub(super) fn color_of(kind: &str) -> Color {
+    match kind {
+        "median" | "point" => Color::new(0x00_72_b2, 0xff),
+        "wall" => Color::new(0x00_9e_73, 0xff),
+        "single" => Color::new(0x56_b4_e9, 0xff),
+        "near" => Color::new(0xcc_79_a7, 0xff),
+        "pair" => Color::new(0xe6_9f_00, 0xff),
+        _ => Color::new(0xd5_5e_00, 0xc0),
+    }
 }
 
-impl AnyEcho {
-    pub(super) const fn t(&self) -> i64 {
-        match self {
-            Self::Median(echo) => echo.t,
-            Self::Consensus(echo) => echo.t,
-        }
-    }
-
-    pub(super) const fn position(&self) -> Point2<f64> {
-        match self {
-            Self::Median(echo) => echo.position,
-            Self::Consensus(echo) => echo.position,
-        }
-    }
-
-    const fn kind(&self) -> &'static str {
-        match self {
-            Self::Median(echo) => echo.kind.name(),
-            Self::Consensus(echo) => echo.kind.name(),
-        }
-    }
-
-    /// Colours that people with any colour vision tell apart (Okabe and Ito, "Color Universal Design"): blue is sharp, orange is not.
-    pub(super) fn color(&self) -> Color {
-        match self.kind() {
-            "median" | "point" => Color::new(0x00_72_b2, 0xff),
-            "wall" => Color::new(0x00_9e_73, 0xff),
-            "single" => Color::new(0x56_b4_e9, 0xff),
-            "near" => Color::new(0xcc_79_a7, 0xff),
-            "pair" => Color::new(0xe6_9f_00, 0xff),
-            _ => Color::new(0xd5_5e_00, 0xc0),
-        }
-    }
-
-    /// The fields of an echo behind its place, in their order.
-    pub(super) fn put(&self, bytes: &mut Vec<u8>, since: i64) {
-        let (measures, crossings, sensor) = match self {
-            Self::Median(echo) => {
-                ([echo.range, echo.azimuth(), echo.resolution, echo.significance()], echo.crossings, echo.sensor)
-            }
-            Self::Consensus(echo) => {
-                ([echo.range, echo.azimuth(), echo.resolution, echo.significance()], echo.support, echo.sensor)
-            }
-        };
-        put_all(bytes, &measures);
-        bytes.extend_from_slice(&offset(self.t(), since).to_le_bytes());
-        bytes.extend_from_slice(&crossings.to_le_bytes());
-        bytes.extend_from_slice(&sensor.to_le_bytes());
-        bytes.push(kind_number(self.kind()));
-        if let Self::Consensus(echo) = self {
-            // Points begin at multiples of it.
-            bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
-            let [x, y] = echo.normal.map_or([f64::NAN; 2], |normal| [normal.x, normal.y]);
-            put_all(bytes, &[echo.sigma_azimuth, echo.sigma_range, x, y]);
-            bytes.extend_from_slice(&echo.support.to_le_bytes());
-            bytes.extend_from_slice(&echo.against.to_le_bytes());
-        }
+/// The fields of an echo behind its place, in their order.
+pub(super) fn put_echo(bytes: &mut Vec<u8>, echo: &AnyEcho, since: i64) {
+    let usual = echo.usual();
+    put_all(bytes, &[usual.range, usual.azimuth, usual.resolution, usual.significance]);
+    bytes.extend_from_slice(&offset(usual.t, since).to_le_bytes());
+    bytes.extend_from_slice(&usual.crossings.to_le_bytes());
+    bytes.extend_from_slice(&usual.sensor.to_le_bytes());
+    bytes.push(kind_number(usual.kind));
+    if let Some(echo) = echo.consensus() {
+        // Points begin at multiples of it.
+        bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
+        let [x, y] = echo.normal.map_or([f64::NAN; 2], |normal| [normal.x, normal.y]);
+        put_all(bytes, &[echo.sigma_azimuth, echo.sigma_range, x, y]);
+        bytes.extend_from_slice(&echo.support.to_le_bytes());
+        bytes.extend_from_slice(&echo.against.to_le_bytes());
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::{collections::BTreeSet, io::Write, sync::Arc};
 
-use atm_core::{ArcCrossing, ConsensusEcho, Echo, Isometry2, Reading, UnitComplex, Vector2};
+use atm_core::{ArcCrossing, Isometry2, Reading, UnitComplex, Vector2};
 
 use super::{
-    clouds::{AnyEcho, earliest, put_crossing, runs},
+    clouds::{color_of, earliest, put_crossing, put_echo, runs},
     content::{Cloud, Content, Transform, pose_of},
     file::{Layout, McapFile},
     merged::Merged,
@@ -19,7 +19,7 @@ use super::{
     sweep::{CROSSING_COLOR, CROSSING_GROUP, MOST_POINTS, Placed, Sweep},
     topics::{self, Topic},
 };
-use crate::{error::Result, log::Row, pipeline::EchoSink, track::Pose};
+use crate::{echo::AnyEcho, error::Result, log::Row, pipeline::EchoSink, track::Pose};
 
 /// Writes what is fused as an MCAP recording, a message of each sort for each sweep of the sensors.
 ///
@@ -180,8 +180,8 @@ impl<W: Write> McapSink<W> {
             let layout = self.layouts.of(Topic::Echoes.points(&self.options));
             self.bytes.clear();
             for echo in run {
-                let place = echo.position();
-                layout.push(&mut self.bytes, place.x, place.y, echo.color(), |bytes| echo.put(bytes, since));
+                let (place, color) = (echo.position(), color_of(echo.kind()));
+                layout.push(&mut self.bytes, place.x, place.y, color, |bytes| put_echo(bytes, echo, since));
             }
             self.send_cloud(Topic::Echoes, since)?;
         }
@@ -248,18 +248,6 @@ impl<W: Write> McapSink<W> {
             self.send_cloud(Topic::PathPoints, t)?;
         }
         Ok(())
-    }
-
-    /// Takes an echo in.
-    fn add(&mut self, echo: AnyEcho) -> Result<bool> {
-        if self.options.contents == Contents::Everything {
-            self.echoes.push(echo.position(), echo.color());
-            self.sweep.echoes.push(echo);
-            if self.sweep.echoes.len() >= MOST_POINTS {
-                self.write_echoes()?;
-            }
-        }
-        Ok(true)
     }
 
     /// Sends the points that were gathered in `bytes`.
@@ -336,12 +324,15 @@ impl<W: Write> EchoSink for McapSink<W> {
         Ok(())
     }
 
-    fn echo(&mut self, echo: &Echo<f64>) -> Result<bool> {
-        self.add(AnyEcho::Median(*echo))
-    }
-
-    fn consensus(&mut self, echo: &ConsensusEcho<f64>) -> Result<bool> {
-        self.add(AnyEcho::Consensus(*echo))
+    fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
+        if self.options.contents == Contents::Everything {
+            self.sweep.echoes.push(*echo);
+            self.echoes.push(echo.position(), color_of(echo.kind()));
+            if self.sweep.echoes.len() >= MOST_POINTS {
+                self.write_echoes()?;
+            }
+        }
+        Ok(true)
     }
 
     fn wants_crossings(&self) -> bool {

@@ -2,11 +2,8 @@
 
 use atm_core::{ArcCrossing, Isometry2, Point2, Reading};
 
-use super::{
-    clouds::AnyEcho,
-    content::{Color, Drawing, Form, Scene},
-};
-use crate::{log::Row, track::Pose};
+use super::content::{Color, Drawing, Form, Scene};
+use crate::{echo::AnyEcho, log::Row, track::Pose};
 
 /// A sweep lasts no longer, in nanoseconds of log time: so much later than its report an echo may be logged.
 const LONGEST: u64 = 100_000_000;

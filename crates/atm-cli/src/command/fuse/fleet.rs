@@ -15,7 +15,7 @@ use std::{
 use atm::{error::Error, job::FuseJob, log::format::Format, pipeline::Settings};
 use indicatif::ProgressBar;
 
-use super::{consensus, job, said, settings};
+use super::{job, said, settings};
 use crate::{Failure, Outcome, args::Fuse, interrupt, report};
 
 /// What is told of one log, and how it ended.
@@ -23,13 +23,10 @@ type Told = (Vec<String>, Result<Outcome, Failure>);
 
 /// Fuses every log into `directory`, several at the same time; what is told of them is in the order of the command line.
 pub fn run(args: &Fuse, directory: &Path) -> Result<Outcome, Failure> {
-    let mut jobs = jobs(args, directory)?;
+    let jobs = jobs(args, directory)?;
     let models = jobs.first().map(|job| job.log.models()).transpose()?.unwrap_or_default();
     let settings = settings(args, &models)?;
-    for job in &mut jobs {
-        job.consensus = consensus(args, &settings)?;
-        job.check()?;
-    }
+    jobs.iter().try_for_each(|job| job.check(&settings))?;
     fs::create_dir_all(directory)
         .map_err(|source| Error::Io { file: directory.display().to_string().into(), source })?;
     let bar = report::progress(length(&args.inputs), args.quiet);
