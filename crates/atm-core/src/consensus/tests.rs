@@ -165,6 +165,29 @@ fn phantom_between_two_poles_is_spoken_against() {
 }
 
 #[test]
+fn readings_that_look_through_it_cost_confidence() {
+    // Of the readings of a pole every third sweep's say something else: nothing as far as they reach, or nothing at all.
+    let log = drive(&World::pole(0.1, 1.5), &pass());
+    let with = |other: f64| {
+        let said = log.iter().map(|&(sweep, sensor, pose, range)| {
+            (sweep, sensor, pose, if sweep % 3 == 0 && range.is_finite() { other } else { range })
+        });
+        fuse(&said.collect::<Vec<_>>(), paper())
+    };
+    let (against, silent) = (with(f64::INFINITY), with(0.1));
+    assert_eq!(against.len(), silent.len());
+    for (against, silent) in against.iter().zip(&silent).filter(|(_, silent)| silent.kind == Reflector::Point) {
+        assert!(against.against > silent.against && against.confidence < silent.confidence, "{against:?} {silent:?}");
+    }
+    assert!(
+        resolved(&against).len() < resolved(&silent).len(),
+        "{} {}",
+        resolved(&against).len(),
+        resolved(&silent).len()
+    );
+}
+
+#[test]
 fn more_confidence_resolves_less_and_nothing_else() {
     let log = drive(
         &World {
