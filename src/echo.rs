@@ -103,6 +103,15 @@ impl AnyEcho {
         }
     }
 
+    /// The kind's place in the list of its estimator's, [`AnyEstimator::kinds`].
+    pub fn place(&self) -> usize {
+        match self {
+            Self::Median(echo) => Kind::ALL.iter().position(|kind| *kind == echo.kind),
+            Self::Consensus(echo) => Reflector::ALL.iter().position(|kind| *kind == echo.kind),
+        }
+        .unwrap_or(usize::MAX)
+    }
+
     /// What every echo has.
     pub fn usual(&self) -> Usual {
         let (t, position, kind) = (self.t(), self.position(), self.kind());

@@ -274,7 +274,7 @@ impl<E: Copy + Into<AnyEcho>> Sink<f64, E> for Reports<'_> {
     fn echo(&mut self, echo: &E) {
         self.hand_on_crossings();
         let echo = (*echo).into();
-        self.summary.echoes.add(echo.kind());
+        self.summary.echoes.add(echo.place());
         if self.failed.is_some() {
             return;
         }

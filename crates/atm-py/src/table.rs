@@ -137,8 +137,8 @@ enum Type {
 /// The echoes of a run.
 pub struct Echoes {
     rows: Rows,
-    /// The words for kinds, and how the array has them.
-    kinds: Vec<(&'static str, Vec<u8>)>,
+    /// The kinds' words as the array has them.
+    kinds: Vec<Vec<u8>>,
     /// Kinds to keep; all where there are none given.
     keep: Option<Vec<&'static str>>,
     is_consensus: bool,
@@ -159,7 +159,7 @@ impl Echoes {
         if keep.is_none() {
             rows.reserve(readings, ECHO_NUMBERS + if is_consensus { CONSENSUS_COLUMNS.len() } else { 0 });
         }
-        let kinds = estimator.kinds().iter().map(|kind| (*kind, wide(kind, KIND_WIDTH))).collect();
+        let kinds = estimator.kinds().iter().map(|kind| wide(kind, KIND_WIDTH)).collect();
         Self { rows, kinds, keep, is_consensus }
     }
 
@@ -182,7 +182,7 @@ impl EchoSink for Echoes {
         rows.id(usual.sensor);
         rows.float(usual.position.x);
         rows.float(usual.position.y);
-        if let Some((_, kind)) = self.kinds.iter().find(|(kind, _)| *kind == usual.kind) {
+        if let Some(kind) = self.kinds.get(echo.place()) {
             rows.bytes.extend_from_slice(kind);
         }
         rows.float(usual.range);
