@@ -16,6 +16,8 @@ const EXTENT: f64 = 1e6;
 const MAX_ROUGH: f64 = 1e5;
 /// Most sweeps of one drive.
 const MAX_SWEEPS: u64 = 100_000_000;
+/// Largest heading and turn, in radians: nanoradians still count there.
+const MAX_ANGLE: f64 = 1e6;
 /// Most waves of a weaving path.
 const MAX_WAVES: f64 = 1000.0;
 
@@ -162,10 +164,13 @@ fn check_path(path: &Path) -> Result<(), String> {
                 return Err(format!("wavelength must leave at most {MAX_WAVES} waves"));
             }
         }
-        Course::Turning { turn, step, .. } => {
+        Course::Turning { yaw, turn, step, .. } => {
             positive(*step, "turn_step")?;
             if !(turn.abs() > 0.0 && turn.is_finite()) {
                 return Err("turn must be finite and not zero".to_owned());
+            }
+            if !(yaw.abs() <= MAX_ANGLE && turn.abs() <= MAX_ANGLE) {
+                return Err(format!("yaw and turn must be at most {MAX_ANGLE} rad"));
             }
         }
         Course::Waypoints(points) => {

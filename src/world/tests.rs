@@ -157,6 +157,11 @@ fn what_is_no_world_is_named_by_line_and_key() {
         &format!("[[pole]]\nx = 1\ny = 1\nradius = \"-2cm\"\n{PATH}"),
         "w.toml:4: `pole.radius` = \"-2cm\": must be above zero and at most 1000 km",
     );
+    for path in ["yaw = \"3917671e300deg\"", "turn = \"-1e7rad\""] {
+        let text = format!("{WALL}[path]\nkind = \"turning\"\nat = [0, 0]\n{path}\nturn_step = \"1e6rad\"\n");
+        let words = World::parse(&text, "w.toml", &[]).unwrap_err().to_string();
+        assert!(words.ends_with("yaw and turn must be at most 1000000 rad"), "{words}");
+    }
     refused(
         &format!("{WALL}thick = 1\n{PATH}"),
         "w.toml:3: unknown key `thick` in [[wall]]; expected one of points, closed, material",

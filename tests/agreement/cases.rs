@@ -130,6 +130,39 @@ fn own_sensor_meets_h_minus_1_earlier_and_h_minus_1_later_ones() {
     assert_eq!(said[6], Said { t: 6, kind: Kind::Median, met: vec![3, 4, 5, 7, 8, 9] });
 }
 
+/// The one that stood still was its sensor's previous reading, and is not in the map.
+#[test]
+fn held_reading_replaces_only_what_has_its_range() {
+    let bounds = Bounds::NONE.with_held(Held::Edges).with_min_step(0.01).unwrap();
+    let mut settled = Drive::settled(4, bounds);
+    let still = |t| Reading { pose: reading(1, 0).pose, ..without_echo(t, 0) };
+    let fates = [reading(0, 0), reading(1, 0), still(2), without_echo(3, 0)].map(|reading| settled.push(&reading).0);
+    assert_eq!(fates, [Arrival::Entered, Arrival::Entered, Arrival::Still, Arrival::Entered].map(Ok));
+    assert_eq!(settled.finish().iter().map(|said| said.t).collect::<Vec<_>>(), [0, 1]);
+}
+
+/// Each is reported once, however long the run: the log of arrivals has 4 H S places, a count of them 16 bits.
+#[test]
+fn run_of_held_readings_may_be_longer_than_anything_that_counts_them() {
+    for (sensors, length) in [(1, 100), (2, 101), (3, 70_000)] {
+        let mut settled = Drive::settled(2, Bounds::NONE.with_held(Held::Edges));
+        let (mut entered, mut said) = (0, Vec::new());
+        for t in 0..length {
+            // The others fire at the beginning and at the end.
+            let sensor = if t < sensors || t > length - sensors { t % sensors } else { 0 };
+            let (fate, reports) = settled.push(&reading(t, sensor as u16));
+            entered += usize::from(fate == Ok(Arrival::Entered));
+            said.extend(reports);
+        }
+        said.extend(settled.finish());
+        assert_eq!(said.len(), entered, "{sensors} sensors, {length} readings");
+        assert!(said.iter().any(|said| said.t == length - 1), "the last of the run");
+        assert!(said.windows(2).all(|pair| pair[0].t < pair[1].t), "in order");
+        // With H = 2 a run begins anew every eight.
+        assert!(entered as i64 <= 2 * length / 7 + 2 * sensors, "{entered} of {length}");
+    }
+}
+
 #[test]
 fn silent_sensor_cannot_hold_its_arcs() {
     let history = 2;

@@ -51,9 +51,8 @@ pub struct Consensus<T> {
 impl<T: Scalar> Consensus<T> {
     /// The resolution that crossings at `min_angle` have, a confidence of 90 %, ranges that are right but for their
     /// rounding, and walls of 0.9 m to either side of an echo.
-    pub fn new(min_angle: MinAngle<T>) -> Self {
-        let nine_tenths = T::from_count(9) / T::from_count(10);
-        Self { min_angle, min_confidence: nine_tenths, range_error: T::ZERO, window: nine_tenths }
+    pub const fn new(min_angle: MinAngle<T>) -> Self {
+        Self { min_angle, min_confidence: T::NINE_TENTHS, range_error: T::ZERO, window: T::NINE_TENTHS }
     }
 
     /// With another least confidence, in \[0, 1): more of it costs coverage and leaves fewer ghosts.

@@ -142,13 +142,14 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         if let Some(skipped) = self.skip(reading, held) {
             return Ok(skipped);
         }
-        let replaces = held && self.bounds.held == Held::Edges && self.map.take_back_held(reading.sensor);
+        let range = reading.range.echo();
+        let replaces = held && self.bounds.held == Held::Edges && self.map.take_back_held(reading.sensor, range);
         // The leavers leave first, then the newcomer meets all that remain, then it enters.
         let newcomer = Newcomer { sensor: reading.sensor, t: reading.t, travel };
         while let Some(slot) = self.map.next_leaver(&newcomer, &self.bounds) {
             self.leave(slot, sink);
         }
-        let arc = reading.range.echo().map(|radius| Arc::new(&reading.pose, radius, &reading.beam));
+        let arc = range.map(|radius| Arc::new(&reading.pose, radius, &reading.beam));
         let slot = self.map.enter(
             reading.sensor,
             Entry {

@@ -39,8 +39,8 @@ pub enum Held {
     /// It is skipped.
     Drop,
     /// Of a run of equal readings the first stays and the last before a change: each one after the second takes the place
-    /// of the one before it. Right at both ends of a wall, and wrong by one held value at most. With `latest` the ones
-    /// after the second are partners to others, and are not reported.
+    /// of the one before it. Right at both ends of a wall, and wrong by one held value at most. A run of more than 4 H
+    /// begins anew every 4 H. With `latest` the ones after the second are partners to others, and are not reported.
     Edges,
 }
 
@@ -128,21 +128,21 @@ impl<S> LocalMap<S> {
         slot
     }
 
-    /// Takes the newest reading of a sensor back, as if it had not arrived, if it is equal to the one before it.
+    /// Takes the newest reading of a sensor back, as if it had not arrived, if it and the one before it have this range, too.
     ///
     /// Its arrival stays in the log, where nothing answers to it any more.
-    pub(crate) fn take_back_held<T: Scalar>(&mut self, sensor: u16) -> bool
+    pub(crate) fn take_back_held<T: Scalar>(&mut self, sensor: u16, range: Option<T>) -> bool
     where
         S: Storage<T>,
     {
         let mut columns = self.storage.columns();
         let depth = columns.depth;
         let Some(ring) = columns.rings.get_mut(usize::from(sensor)) else { return false };
-        let range = |age| {
+        let is_held = |age| {
             let slot = usize::from(sensor) * depth + back(ring.newest, age, depth);
-            columns.radius.get(slot).copied().filter(|radius| radius.finite()).unwrap_or(T::NAN)
+            columns.radius.get(slot).copied().filter(|radius| radius.finite()) == range
         };
-        if ring.present < 2 || range(0).order(&range(1)).is_ne() {
+        if ring.present < 2 || !is_held(0) || !is_held(1) {
             return false;
         }
         let slot = usize::from(sensor) * depth + usize::from(ring.newest);
@@ -166,9 +166,10 @@ impl<S> LocalMap<S> {
         let oldest = self.oldest_present();
         let columns = self.storage.columns();
         let ring = columns.rings.get(usize::from(newcomer.sensor))?;
-        if let Some((sensor, slot)) = oldest {
-            // The newcomer is its sensor's next reading.
-            let outpaced = sensor != newcomer.sensor && usize::from(ring.since_oldest) + 1 >= 4 * history;
+        if let Some((_, slot)) = oldest {
+            // The newcomer is its sensor's next reading. Of the oldest one's own sensor so many come only where each takes
+            // the place of the one before it: rule (a) counts them once, the log one by one.
+            let outpaced = usize::from(ring.since_oldest) + 1 >= 4 * history;
             let age = newcomer.t.wrapping_sub(columns.time(slot)) as u64;
             let aged = bounds.max_age.is_some_and(|limit| age > limit);
             let travel = newcomer.travel.0.wrapping_sub(columns.travelled(slot));

@@ -58,6 +58,8 @@ pub trait Scalar: RealField + Copy + sealed::Sealed {
     const ZERO: Self;
     /// ½.
     const HALF: Self;
+    /// 0.9.
+    const NINE_TENTHS: Self;
     /// 1.
     const ONE: Self;
     /// 2.
@@ -118,6 +120,7 @@ macro_rules! scalar {
         impl Scalar for $float {
             const ZERO: Self = 0.0;
             const HALF: Self = 0.5;
+            const NINE_TENTHS: Self = 0.9;
             const ONE: Self = 1.0;
             const TWO: Self = 2.0;
             const FOUR: Self = 4.0;

@@ -188,7 +188,7 @@ impl<T: Scalar> Fit<T> {
     }
 
     /// One step of Gauss and Newton, at most `limit` in either direction. What it rests on; `None` where that says nothing
-    /// across the ray.
+    /// across the ray, or has the reflector behind the sensor.
     pub fn step(
         &mut self,
         witnesses: impl Iterator<Item = Witness<T>>,
@@ -215,6 +215,9 @@ impl<T: Scalar> Fit<T> {
                 x
             }
         });
+        if !(distance + along > T::ZERO) {
+            return None;
+        }
         let turned = direction * distance + Vector2::new(-direction.y, direction.x) * across;
         self.place.direction = turned / dot(turned, turned).square_root();
         self.place.distance = distance + along;
@@ -304,6 +307,16 @@ mod tests {
         }
         assert_eq!(fit.place.radius, 0.0);
         assert!((fit.place.position() - Point2::new(0.0, 2.0)).norm() < 1e-9, "{}", fit.place.position());
+    }
+
+    #[test]
+    fn nothing_is_found_behind_the_sensor() {
+        // Steps of the range that are larger than the range: all say that it is 1 m nearer, and it is half a metre away.
+        let mut fit = fit(Shape::Wall);
+        (fit.place.distance, fit.range) = (0.5, 0.5);
+        let witnesses = [-0.5, 0.5].map(|x| Witness::looking(Point2::new(x, 0.0), 90.0, -2.0));
+        let tolerance = Tolerance { agree: 4.0, beyond: 6.0 };
+        assert!(fit.step(witnesses.into_iter(), &tolerance, 4.0).is_none());
     }
 
     #[test]
