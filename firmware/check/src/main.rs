@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! check record LOG                                writes the recorded log
-//! check judge TARGET IMAGE OUTPUT LOG LIMITS      holds an image and what it printed against the host and the limits
+//! check judge NAME IMAGE OUTPUT LOG LIMITS        holds an image and what it printed against the host and the limits
 //! ```
 //! A line for each check, `ok` or `FAIL` in front; exit status 1 if any failed.
 
@@ -28,10 +28,10 @@ fn run(arguments: &[String]) -> Result<bool, Box<dyn Error>> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["record", log] => fs::write(log, drive::record()?).map_err(|error| format!("{log}: {error}"))?,
-        ["judge", target, image, output, log, limits] => {
-            return judge::judge(&judge::Exhibits { target, image, output, log, limits });
+        ["judge", name, image, output, log, limits] => {
+            return judge::judge(&judge::Exhibits { name, image, output, log, limits });
         }
-        _ => return Err("usage: check record LOG | check judge TARGET IMAGE OUTPUT LOG LIMITS".into()),
+        _ => return Err("usage: check record LOG | check judge NAME IMAGE OUTPUT LOG LIMITS".into()),
     }
     Ok(true)
 }

@@ -10,15 +10,35 @@ mod stack;
 
 use core::panic::PanicInfo;
 
-use atm_core::{Bounds, DomainError, Echo, Fuser, TransversalMedian};
-use replay::{Adversary, Event, Faults, Fuser32, Line, Log, Outcome, Ring, Store32};
+use atm_core::{Bounds, DomainError, Estimator, Fuser};
+use replay::{Adversary, Event, Faults, Line, Log, Outcome, Ring, Store32};
 
-use crate::{clock::Clock, semihosting::Console};
+use crate::{
+    chosen::{Chosen, ESTIMATOR},
+    clock::Clock,
+    semihosting::Console,
+};
 
 /// The recorded log; `firmware/test` has it made.
 static LOG: &[u8] = include_bytes!(env!("REPLAY_LOG"));
 
-static mut FUSER: Fuser32 = Fuser::latest(TransversalMedian::PAPER, Bounds::NONE, Store32::new());
+/// Who says where echoes came from: the median, or the consensus.
+mod chosen {
+    #[cfg(feature = "consensus")]
+    pub type Chosen = atm_core::Consensus<f32>;
+    #[cfg(feature = "consensus")]
+    pub const ESTIMATOR: Chosen = Chosen::new(atm_core::MinAngle::PAPER);
+
+    #[cfg(not(feature = "consensus"))]
+    pub type Chosen = atm_core::TransversalMedian<f32>;
+    #[cfg(not(feature = "consensus"))]
+    pub const ESTIMATOR: Chosen = Chosen::PAPER;
+}
+
+type ChosenFuser = replay::Fuser32<Chosen>;
+type ChosenEcho = <Chosen as Estimator<f32>>::Echo;
+
+static mut FUSER: ChosenFuser = Fuser::latest(ESTIMATOR, Bounds::NONE, Store32::new());
 
 unsafe extern "C" {
     fn a_panic_path_is_left() -> !;
@@ -36,13 +56,13 @@ fn panic(_: &PanicInfo) -> ! {
 /// A function of its own under its own name, so that its size can be told from the rest of the image's.
 #[unsafe(no_mangle)]
 #[inline(never)]
-fn fuse_reading(fuser: &mut Fuser32, ring: &Ring<f32>, event: &Event<f32>, outcome: &mut Outcome<f32>) {
+fn fuse_reading(fuser: &mut ChosenFuser, ring: &Ring<f32>, event: &Event<f32>, outcome: &mut Outcome<ChosenEcho>) {
     replay::fuse(fuser, ring, event, outcome);
 }
 
 /// Replays runs of readings, each through the same fuser, and adds up what they cost.
 struct Bench {
-    fuser: &'static mut Fuser32,
+    fuser: &'static mut ChosenFuser,
     clock: Clock,
     console: Console,
 }
@@ -51,26 +71,26 @@ impl Bench {
     /// Fuses the readings of a run, prints what became of each and what the run cost.
     #[inline(never)]
     fn run(&mut self, run: &str, ring: &Ring<f32>, event: &mut dyn FnMut(u32) -> Option<Event<f32>>) {
-        let (mut readings, mut worst, mut total) = (0u32, 0u32, 0u32);
+        let (mut readings, mut worst, mut total) = (0u32, 0u32, 0u64);
         let mut outcome = Outcome::NONE;
         while let Some(event) = event(readings) {
             let start = self.clock.read();
             fuse_reading(self.fuser, ring, &event, &mut outcome);
             let cost = Clock::instructions_since(start, self.clock.read());
             worst = worst.max(cost);
-            total = total.wrapping_add(cost);
+            total = total.wrapping_add(u64::from(cost));
             self.print(run, readings, &outcome);
             readings = readings.wrapping_add(1);
         }
         // In `latest` that empties the local map and reports nothing.
-        self.fuser.finish(&mut |_: &Echo<f32>| {});
+        self.fuser.finish(&mut |_: &ChosenEcho| {});
         self.figure(run, "readings", readings);
-        self.figure(run, "instructions", total);
+        self.figure(run, "average", total.div_ceil(u64::from(readings.max(1))) as u32);
         self.figure(run, "worst", worst);
     }
 
     #[inline(never)]
-    fn print(&mut self, run: &str, reading: u32, outcome: &Outcome<f32>) {
+    fn print(&mut self, run: &str, reading: u32, outcome: &Outcome<ChosenEcho>) {
         self.console.write(Line::of(run, reading, outcome).finished());
     }
 

@@ -17,10 +17,10 @@ mod outcome;
 mod ring;
 
 pub use crate::{
-    adversary::{Adversary, WORST_CROSSINGS},
+    adversary::{Adversary, WORST_CROSSINGS, WORST_SUPPORT},
     event::Event,
     faults::{Fault, Faults},
-    line::Line,
+    line::{Line, Written},
     log::{HEADER, Log, RECORD, Sweep},
     outcome::{Outcome, fuse},
     ring::Ring,
@@ -33,7 +33,7 @@ pub const SENSORS: usize = 16;
 pub const HISTORY: usize = 10;
 
 /// The fuser under test: `latest`, in single precision, on storage of const size.
-pub type Fuser32 = atm_core::Fuser<f32, Store32>;
+pub type Fuser32<E> = atm_core::Fuser<f32, Store32, E>;
 
 /// Its storage.
 pub type Store32 = atm_core::LatestArrays<f32, SENSORS, HISTORY>;

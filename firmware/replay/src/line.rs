@@ -1,6 +1,6 @@
 //! How an outcome is written down: hexadecimal words, so that no digit is lost and nothing formats a float.
 
-use atm_core::{Arrival, Echo, Rejected};
+use atm_core::{Arrival, ConsensusEcho, Echo, Rejected};
 
 use crate::outcome::Outcome;
 
@@ -13,7 +13,7 @@ pub struct Line {
 
 impl Line {
     /// Longer than any line that is written.
-    const LENGTH: usize = 128;
+    const LENGTH: usize = 144;
 
     /// A line that begins with `word`.
     pub fn new(word: &str) -> Self {
@@ -23,12 +23,12 @@ impl Line {
     }
 
     /// What became of reading number `index` of `run`, a letter.
-    pub fn of(run: &str, index: u32, outcome: &Outcome<f32>) -> Self {
+    pub fn of<E: Written>(run: &str, index: u32, outcome: &Outcome<E>) -> Self {
         let mut line = Self::new(run);
         line.word(index);
         match (&outcome.arrival, &outcome.echo, outcome.ignored) {
             (Err(rejected), ..) => line.text(reason(*rejected)),
-            (Ok(_), Some(echo), _) => line.echo(echo),
+            (Ok(_), Some(echo), _) => echo.write(&mut line),
             (Ok(_), None, Some(crossings)) => {
                 line.text("ignored");
                 line.word(crossings);
@@ -60,14 +60,10 @@ impl Line {
         self.bytes.get(..self.length).unwrap_or_default()
     }
 
-    fn echo(&mut self, echo: &Echo<f32>) {
-        self.text(echo.kind.name());
-        let bearing = [echo.bearing.sin(), echo.bearing.cos()];
-        for float in echo.position.coords.iter().chain(&bearing).chain(&[echo.resolution, echo.arc_length]) {
+    fn floats<const N: usize>(&mut self, floats: [f32; N]) {
+        for float in floats {
             self.word(float.to_bits());
         }
-        self.word(echo.crossings);
-        self.word(echo.within);
     }
 
     fn push(&mut self, byte: u8) {
@@ -75,6 +71,35 @@ impl Line {
             *place = byte;
             self.length += 1;
         }
+    }
+}
+
+/// An echo whose every bit can be written down.
+pub trait Written {
+    /// Adds it to a line.
+    fn write(&self, line: &mut Line);
+}
+
+impl Written for Echo<f32> {
+    fn write(&self, line: &mut Line) {
+        line.text(self.kind.name());
+        line.floats([self.position.x, self.position.y, self.bearing.sin(), self.bearing.cos()]);
+        line.floats([self.resolution, self.arc_length]);
+        line.word(self.crossings);
+        line.word(self.within);
+    }
+}
+
+impl Written for ConsensusEcho<f32> {
+    fn write(&self, line: &mut Line) {
+        line.text(self.kind.name());
+        line.floats([self.position.x, self.position.y, self.bearing.sin(), self.bearing.cos()]);
+        line.floats([self.confidence, self.sigma_azimuth, self.sigma_range]);
+        if let Some(normal) = self.normal {
+            line.floats([normal.x, normal.y]);
+        }
+        line.word(self.support);
+        line.word(self.against);
     }
 }
 

@@ -1,27 +1,27 @@
 //! What one reading led to.
 
-use atm_core::{Arrival, Echo, Fuser, Rejected, Scalar, Sink, Storage};
+use atm_core::{Arrival, Estimator, Fuser, Rejected, Scalar, Sink, Storage};
 
 use crate::{event::Event, ring::Ring};
 
-/// What one reading led to.
+/// What one reading led to: with `E` an echo.
 #[derive(Debug, Clone, Copy)]
-pub struct Outcome<T: Scalar> {
+pub struct Outcome<E> {
     /// Whether it arrived.
     pub arrival: Result<Arrival, Rejected>,
     /// The echo it gave.
-    pub echo: Option<Echo<T>>,
+    pub echo: Option<E>,
     /// The number of crossings, where that is why it gave none.
     pub ignored: Option<u32>,
 }
 
-impl<T: Scalar> Outcome<T> {
+impl<E> Outcome<E> {
     /// Nothing yet.
     pub const NONE: Self = Self { arrival: Ok(Arrival::Entered), echo: None, ignored: None };
 }
 
-impl<T: Scalar> Sink<T, Echo<T>> for Outcome<T> {
-    fn echo(&mut self, echo: &Echo<T>) {
+impl<T: Scalar, E: Copy> Sink<T, E> for Outcome<E> {
+    fn echo(&mut self, echo: &E) {
         self.echo = Some(*echo);
     }
 
@@ -32,11 +32,11 @@ impl<T: Scalar> Sink<T, Echo<T>> for Outcome<T> {
 
 /// From a raw reading to what it led to.
 #[inline]
-pub fn fuse<T: Scalar, S: Storage<T>>(
-    fuser: &mut Fuser<T, S>,
+pub fn fuse<T: Scalar, S: Storage<T>, E: Estimator<T, Echo: Copy>>(
+    fuser: &mut Fuser<T, S, E>,
     ring: &Ring<T>,
     event: &Event<T>,
-    outcome: &mut Outcome<T>,
+    outcome: &mut Outcome<E::Echo>,
 ) {
     *outcome = Outcome::NONE;
     outcome.arrival = fuser.push(&ring.reading(event), outcome);
