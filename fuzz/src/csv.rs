@@ -105,9 +105,7 @@ struct Table(TableWriter<Vec<u8>>);
 
 impl EchoSink for Table {
     fn echo(&mut self, echo: &AnyEcho) -> atm::error::Result<bool> {
-        if let AnyEcho::Median(echo) = echo {
-            crate::fuser::sane(echo);
-        }
+        crate::fuser::sane_either(echo);
         self.0.echo(echo).map_err(|source| Error::Io { file: "echoes".into(), source })?;
         Ok(true)
     }

@@ -1,12 +1,14 @@
-//! The fuser itself: any readings, any options, both precisions; the same bits on every storage.
+//! The fuser itself: any readings, any options, either estimator, both precisions; the same bits on every storage.
 
 use arbitrary::{Result, Unstructured};
 use atm::{
     core::{
-        ArcCrossing, Arrays, Arrival, Beam, Bounds, Echo, Fuser, Held, Isometry2, Kind, LatestArrays, Limits, MinAngle,
-        OnNone, OnTwo, Point2, RangeResolution, Reading, Rejected, SETTLED_BLOCKS, Scalar, SettledStorage, Sink,
-        SnapshotStorage, Storage, TransversalMedian, Travel, UnitComplex, Vector2,
+        ArcCrossing, Arrays, Arrival, Beam, Bounds, Consensus, ConsensusEcho, Echo, Estimator, Fuser, Held, Isometry2,
+        Kind, LatestArrays, Limits, MinAngle, OnNone, OnTwo, Point2, RangeResolution, Reading, Reflector, Rejected,
+        SETTLED_BLOCKS, Scalar, SettledStorage, Sink, SnapshotStorage, Storage, TransversalMedian, Travel, UnitComplex,
+        Vector2,
     },
+    echo::AnyEcho,
     storage::{LatestSlots, SettledSlots},
 };
 use nalgebra::Translation2;
@@ -106,8 +108,8 @@ fn reading<T: Number>(input: &mut Unstructured<'_>, t: &mut i64) -> Result<Readi
     })
 }
 
-struct Case<T: Scalar> {
-    estimator: TransversalMedian<T>,
+struct Case<T: Scalar, E> {
+    estimator: E,
     bounds: Bounds<T>,
     readings: Vec<Reading<T>>,
     /// After every so many readings, a snapshot.
@@ -121,7 +123,7 @@ fn case<T: Number, const H: usize>(input: &mut Unstructured<'_>, options: u8) ->
         0 => MinAngle::PAPER,
         _ => MinAngle::new(number::<T>(input)?).unwrap_or(MinAngle::PAPER),
     };
-    let estimator = TransversalMedian {
+    let median = TransversalMedian {
         min_angle,
         on_none: if options & 8 == 0 { OnNone::Center } else { OnNone::Drop },
         on_two: *input.choose(&[OnTwo::Drop, OnTwo::Center, OnTwo::Mean])?,
@@ -138,17 +140,39 @@ fn case<T: Number, const H: usize>(input: &mut Unstructured<'_>, options: u8) ->
     if options & 128 != 0 {
         bounds = bounds.with_min_step(number::<T>(input)?).unwrap_or(bounds);
     }
-    let (snapshots, shifts) = (usize::from(input.arbitrary::<u8>()? % 8), usize::from(input.arbitrary::<u8>()? % 8));
+    let (more, other) = input.arbitrary::<(u8, u8)>()?;
+    let (snapshots, shifts) = (usize::from(more % 8), usize::from(other % 8));
+    if other & 128 != 0 {
+        bounds = bounds.with_held(Held::Edges);
+    }
+    let consensus = match more & 128 {
+        0 => None,
+        _ => Some(consensus(min_angle, more, input)?),
+    };
     let (mut readings, mut t) = (Vec::new(), 0);
     while !input.is_empty() && readings.len() < MOST {
         let Ok(reading) = reading::<T>(input, &mut t) else { break };
         readings.push(reading);
     }
-    Case::<T> { estimator, bounds, readings, snapshots, shifts }.check::<H>();
+    match consensus {
+        None => Case { estimator: median, bounds, readings, snapshots, shifts }.check::<H>(),
+        Some(estimator) => Case { estimator, bounds, readings, snapshots, shifts }.check::<H>(),
+    }
     Ok(())
 }
 
-impl<T: Number> Case<T> {
+fn consensus<T: Number>(min_angle: MinAngle<T>, options: u8, input: &mut Unstructured<'_>) -> Result<Consensus<T>> {
+    let mut consensus = Consensus::new(min_angle);
+    if options & 64 != 0 {
+        consensus = consensus.with_min_confidence(number(input)?).unwrap_or(consensus);
+    }
+    if options & 32 != 0 {
+        consensus = consensus.with_range_error(number(input)?).unwrap_or(consensus);
+    }
+    Ok(consensus)
+}
+
+impl<T: Number, E: Estimator<T, Echo: Said> + Copy> Case<T, E> {
     /// The same bits on every storage, in both modes.
     fn check<const H: usize>(&self) {
         let settled = self.settled(SettledSlots::new(SENSORS, H).expect("small"));
@@ -163,7 +187,7 @@ impl<T: Number> Case<T> {
         assert_eq!(causal.fates, settled.fates);
     }
 
-    fn latest_fuser<S: Storage<T>>(&self, storage: S) -> Fuser<T, S> {
+    fn latest_fuser<S: Storage<T>>(&self, storage: S) -> Fuser<T, S, E> {
         Fuser::latest(self.estimator, self.bounds, storage)
     }
 
@@ -184,9 +208,9 @@ impl<T: Number> Case<T> {
 
     fn run<S: Storage<T>>(
         &self,
-        fuser: &mut Fuser<T, S>,
-        snapshot: impl Fn(&mut Fuser<T, S>, &mut Snapshots<'_>),
-        grow: impl Fn(&mut Fuser<T, S>),
+        fuser: &mut Fuser<T, S, E>,
+        snapshot: impl Fn(&mut Fuser<T, S, E>, &mut Snapshots<'_>),
+        grow: impl Fn(&mut Fuser<T, S, E>),
     ) -> Notes {
         let mut notes = Notes::default();
         for (index, reading) in self.readings.iter().enumerate() {
@@ -233,31 +257,84 @@ struct Notes {
 
 #[derive(Debug, PartialEq)]
 enum Word {
-    Echo([u64; 8]),
+    Echo([u64; 16]),
     Ignored(u32),
     Crossings(u64),
-    Snapshot([u64; 8]),
+    Snapshot([u64; 16]),
 }
 
-fn bits<T: Number>(echo: &Echo<T>) -> [u64; 8] {
-    let number = |number: T| number.wide().to_bits();
-    [
-        echo.t as u64,
-        u64::from(echo.sensor) << 32 | u64::from(echo.within) << 16 | echo.kind as u64,
-        number(echo.position.x),
-        number(echo.position.y),
-        number(echo.range),
-        number(echo.bearing.sin()),
-        number(echo.resolution),
-        number(echo.significance()),
-    ]
+/// An echo whose sanity can be insisted on, and whose every bit can be compared.
+trait Said {
+    fn insist(&self);
+    /// Crossings that have been handed out with it.
+    fn handed_out(&self) -> u32;
+    fn bits(&self) -> [u64; 16];
 }
 
-impl<T: Number> Sink<T, Echo<T>> for Notes {
-    fn echo(&mut self, echo: &Echo<T>) {
-        sane(echo);
-        assert_eq!(self.count, echo.crossings, "crossings handed out and counted");
-        self.words.extend([Word::Crossings(self.crossings), Word::Echo(bits(echo))]);
+/// Integers and floats of an echo, in sixteen words.
+fn words<T: Number, const N: usize>(integers: [u64; 3], floats: [T; N]) -> [u64; 16] {
+    let mut words = [0; 16];
+    let all = integers.into_iter().chain(floats.into_iter().map(|number| number.wide().to_bits()));
+    words.iter_mut().zip(all).for_each(|(word, bits)| *word = bits);
+    words
+}
+
+impl<T: Number> Said for Echo<T> {
+    fn insist(&self) {
+        sane(self);
+    }
+
+    fn handed_out(&self) -> u32 {
+        self.crossings
+    }
+
+    fn bits(&self) -> [u64; 16] {
+        let sort = u64::from(self.sensor) << 32 | u64::from(self.within) << 16 | self.kind as u64;
+        let (place, sin) = (self.position, self.bearing.sin());
+        words(
+            [self.t as u64, sort, u64::from(self.crossings)],
+            [place.x, place.y, self.range, sin, self.resolution, self.significance()],
+        )
+    }
+}
+
+impl<T: Number> Said for ConsensusEcho<T> {
+    fn insist(&self) {
+        sane_consensus(self);
+    }
+
+    fn handed_out(&self) -> u32 {
+        0
+    }
+
+    fn bits(&self) -> [u64; 16] {
+        let sort = u64::from(self.sensor) << 32 | self.kind as u64;
+        let counts = u64::from(self.support) << 32 | u64::from(self.against);
+        let (place, sin) = (self.position, self.bearing.sin());
+        let normal = self.normal.unwrap_or(Vector2::new(T::NAN, T::NAN));
+        words(
+            [self.t as u64, sort, counts],
+            [
+                place.x,
+                place.y,
+                self.range,
+                sin,
+                self.resolution,
+                self.confidence,
+                self.sigma_azimuth,
+                self.sigma_range,
+                normal.x,
+                normal.y,
+            ],
+        )
+    }
+}
+
+impl<T: Number, E: Said> Sink<T, E> for Notes {
+    fn echo(&mut self, echo: &E) {
+        echo.insist();
+        assert_eq!(self.count, echo.handed_out(), "crossings handed out and counted");
+        self.words.extend([Word::Crossings(self.crossings), Word::Echo(echo.bits())]);
         (self.crossings, self.count) = (0, 0);
     }
 
@@ -286,14 +363,22 @@ impl<T: Number> Sink<T, Echo<T>> for Notes {
 
 struct Snapshots<'a>(&'a mut Notes);
 
-impl<T: Number> Sink<T, Echo<T>> for Snapshots<'_> {
-    fn echo(&mut self, echo: &Echo<T>) {
-        sane(echo);
-        self.0.words.push(Word::Snapshot(bits(echo)));
+impl<T: Number, E: Said> Sink<T, E> for Snapshots<'_> {
+    fn echo(&mut self, echo: &E) {
+        echo.insist();
+        self.0.words.push(Word::Snapshot(echo.bits()));
     }
 }
 
-/// What holds of every echo, whatever it was made from.
+/// What holds of every echo, of whichever estimator.
+pub fn sane_either(echo: &AnyEcho) {
+    match echo {
+        AnyEcho::Median(echo) => sane(echo),
+        AnyEcho::Consensus(echo) => sane_consensus(echo),
+    }
+}
+
+/// What holds of every echo of the median, whatever it was made from.
 pub fn sane<T: Number>(echo: &Echo<T>) {
     let azimuth = echo.azimuth().wide();
     assert!(azimuth.abs() <= std::f64::consts::FRAC_PI_2 + 1e-6, "{echo:?}");
@@ -309,4 +394,21 @@ pub fn sane<T: Number>(echo: &Echo<T>) {
         _ => true,
     };
     assert!(fits, "{echo:?}");
+}
+
+/// What holds of every echo of the consensus, whatever it was made from.
+pub fn sane_consensus<T: Number>(echo: &ConsensusEcho<T>) {
+    let azimuth = echo.azimuth().wide();
+    assert!(azimuth.abs() <= std::f64::consts::FRAC_PI_2 + 1e-6, "{echo:?}");
+    assert!(echo.range.wide() > 0.0 && echo.range.finite(), "{echo:?}");
+    assert!(echo.resolution.wide() >= 0.0, "{echo:?}");
+    assert!((0.0..=1.0).contains(&echo.confidence.wide()), "{echo:?}");
+    assert!((0.0..=1.0).contains(&echo.significance().wide()), "{echo:?}");
+    assert!(echo.sigma_azimuth.wide() >= 0.0 && echo.sigma_range.wide() >= 0.0, "{echo:?}");
+    assert_eq!(echo.normal.is_some(), echo.kind == Reflector::Wall, "{echo:?}");
+    if let Some(normal) = echo.normal {
+        assert!((normal.norm().wide() - 1.0).abs() < 1e-3, "{echo:?}");
+    }
+    // Of the arc's centre nothing is claimed but what the reading says.
+    assert!(echo.kind == Reflector::Center || echo.support >= 2, "{echo:?}");
 }

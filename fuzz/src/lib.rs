@@ -12,4 +12,5 @@ pub mod pieces;
 pub mod poses;
 pub mod rig;
 pub mod text;
+pub mod unpacked;
 pub mod world;

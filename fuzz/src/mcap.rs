@@ -32,11 +32,11 @@ pub fn check(bytes: &[u8]) {
 
 /// What a reader says of a recording until its end or its error.
 #[derive(Debug, PartialEq)]
-struct Said {
-    rows: Vec<Row>,
-    problems: Vec<Problem>,
-    ids: Vec<Arc<str>>,
-    words: Vec<String>,
+pub struct Said {
+    pub rows: Vec<Row>,
+    pub problems: Vec<Problem>,
+    pub ids: Vec<Arc<str>>,
+    pub words: Vec<String>,
 }
 
 /// Takes everything that is told, and does nothing with it.
@@ -54,7 +54,7 @@ impl Tap for Listener {
     }
 }
 
-fn open(options: u8, input: Input) -> Result<McapReadings> {
+pub fn open(options: u8, path: &str, input: Input) -> Result<McapReadings> {
     let everything = options & 2 != 0;
     let choices = Options {
         clock: [ClockChoice::Header, ClockChoice::Log, ClockChoice::Publish, ClockChoice::Header]
@@ -66,7 +66,7 @@ fn open(options: u8, input: Input) -> Result<McapReadings> {
         ..Options::default()
     };
     let rig = (options & 1 != 0).then(|| Arc::clone(&RIG));
-    let mut log = McapReadings::open("-", input, rig, None, choices)?;
+    let mut log = McapReadings::open(path, input, rig, None, choices)?;
     if everything {
         log.set_tap(Box::new(Listener));
     }
@@ -74,13 +74,14 @@ fn open(options: u8, input: Input) -> Result<McapReadings> {
 }
 
 fn agree(options: u8, pattern: u8, file: &[u8]) {
-    let at_once = read(open(options, whole(file)), file.len(), || 0);
+    let at_once = read(open(options, "-", whole(file)), file.len(), || 0);
     let (input, reads) = pieces(file, pattern);
-    let in_pieces = read(open(options, input), file.len(), || reads.load(Ordering::Relaxed));
+    let in_pieces = read(open(options, "-", input), file.len(), || reads.load(Ordering::Relaxed));
     assert_eq!(at_once, in_pieces);
 }
 
-fn read(opened: Result<McapReadings>, length: usize, reads: impl Fn() -> u64) -> Said {
+/// Reads to the end or to the error.
+pub fn read(opened: Result<McapReadings>, length: usize, reads: impl Fn() -> u64) -> Said {
     let mut said = Said { rows: Vec::new(), problems: Vec::new(), ids: Vec::new(), words: Vec::new() };
     let mut source = match opened {
         Ok(source) => source,
@@ -140,9 +141,7 @@ struct Sane;
 
 impl EchoSink for Sane {
     fn echo(&mut self, echo: &AnyEcho) -> Result<bool> {
-        if let AnyEcho::Median(echo) = echo {
-            crate::fuser::sane(echo);
-        }
+        crate::fuser::sane_either(echo);
         Ok(true)
     }
 
@@ -152,7 +151,7 @@ impl EchoSink for Sane {
 }
 
 fn fuse(options: u8, file: &[u8]) {
-    let Ok(mut source) = open(options, whole(file)) else { return };
+    let Ok(mut source) = open(options, "-", whole(file)) else { return };
     let emit = if options & 128 == 0 { Emit::Settled } else { Emit::Latest };
     let settings = Settings { emit, history: 2, bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: false };
     let (summary, _) = pipeline::fuse(&mut source, None, &[], &settings, &mut Sane, &mut |_| ());
@@ -185,12 +184,12 @@ impl Recording {
         self.0.extend(content);
     }
 
-    /// A schema and a channel of its own, both of this number.
+    /// A schema and a channel of its own, of this number; schemas count from 1.
     pub fn channel(&mut self, id: u16, topic: &str, encoding: &str, schema: (&str, &str, &[u8])) {
         let (name, language, content) = schema;
         let number = |id: u16| id.to_le_bytes().to_vec();
-        self.record(0x03, &[number(id), text(name), text(language), blob(content)].concat());
-        self.record(0x04, &[number(id), number(id), text(topic), text(encoding), blob(&[])].concat());
+        self.record(0x03, &[number(id + 1), text(name), text(language), blob(content)].concat());
+        self.record(0x04, &[number(id), number(id + 1), text(topic), text(encoding), blob(&[])].concat());
     }
 
     /// A message, recorded and sent at the same time.

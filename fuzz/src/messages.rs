@@ -44,7 +44,7 @@ pub fn check(bytes: &[u8]) {
 }
 
 /// Every channel there is, one perhaps with another schema, and messages of any of them.
-fn recording(input: &mut Unstructured<'_>) -> Result<Vec<u8>> {
+pub fn recording(input: &mut Unstructured<'_>) -> Result<Vec<u8>> {
     let mut recording = Recording::default();
     let other = input.arbitrary::<u8>()?;
     for (id, &(topic, encoding, name, language, schema)) in (0..).zip(&CHANNELS) {
@@ -67,6 +67,36 @@ fn recording(input: &mut Unstructured<'_>) -> Result<Vec<u8>> {
         recording.message(channel, t as u64, &content);
     }
     Ok(recording.end())
+}
+
+/// A recording of a drive along one heading: odometry, then what each sensor that fired then read. Sensor `0` has the frame `0`.
+pub fn drive<'a>(instants: impl Iterator<Item = (i64, [f64; 2], &'a [Option<f64>; 3])>) -> Vec<u8> {
+    let mut recording = Recording::default();
+    for (id, &(topic, encoding, name, language, schema)) in [(0, &CHANNELS[0]), (4, &CHANNELS[4])] {
+        recording.channel(id, topic, encoding, (name, language, schema));
+    }
+    let head: &[u8] = &[0, 1, 0, 0];
+    for (t, [x, y], ranges) in instants {
+        let mut odometry = Message { bytes: Vec::new(), aligns: true };
+        odometry.header(t, "odom");
+        odometry.text("base_link");
+        for part in [x, y, 0.0, 0.0, 0.0, 0.0, 1.0] {
+            odometry.put(&f64::to_le_bytes(part));
+        }
+        odometry.bytes.extend([0; 8 * (36 + 6 + 36)]);
+        recording.message(4, t as u64, &[head, &odometry.bytes].concat());
+        for (frame, range) in ["0", "1", "2"].into_iter().zip(ranges) {
+            let Some(range) = range else { continue };
+            let mut reading = Message { bytes: Vec::new(), aligns: true };
+            reading.header(t, frame);
+            reading.put(&[0]);
+            for number in [0.0, 0.0, 0.0, *range as f32] {
+                reading.put(&f32::to_le_bytes(number));
+            }
+            recording.message(0, t as u64, &[head, &reading.bytes].concat());
+        }
+    }
+    recording.end()
 }
 
 fn any(input: &mut Unstructured<'_>) -> Result<Vec<u8>> {
