@@ -5,6 +5,8 @@
 mod drive;
 #[path = "../tests/consensus/score.rs"]
 mod score;
+#[path = "accuracy/weighted.rs"]
+mod weighted;
 
 use std::ops::Range;
 
@@ -38,6 +40,8 @@ fn main() {
         When::Settled,
     );
     print("The same, and the consensus told of nothing", &noisy, usual(), When::Settled);
+    weighted::print("clean", SEEDS, &clean);
+    weighted::print("15 % detours, 5 % crosstalk", SEEDS, &disturbed());
     curve("Clean", &clean);
     curve("15 % detours, 5 % crosstalk", &disturbed());
 }
