@@ -15,7 +15,7 @@ use nalgebra::Translation2;
 
 const SENSORS: usize = 3;
 /// Most readings of one case.
-const MOST: usize = 64;
+const MOST: usize = 32;
 
 /// A case from bytes, in the precision that its first one says.
 pub fn check(bytes: &[u8]) {
