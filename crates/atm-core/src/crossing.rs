@@ -127,10 +127,11 @@ pub fn crossings<T: Scalar>(arc: &Arc<T>, other: &Arc<T>, min_angle: &MinAngle<T
     let axis = arc.axis();
     for offset in [foot + side, foot - side] {
         if arc.sees(offset) && other.sees(offset - between) {
-            let sine = cross(axis, offset) / square;
-            // Rounding may carry the sine a last place past 1; a reading so short that its square is 0 has no azimuth.
-            if let Some(sine) = unit_interval(sine) {
-                visit(Crossing { offset, sine, cosine_between: numerator.magnitude() / twice_product });
+            let (sine, cosine_between) = (cross(axis, offset) / square, numerator.magnitude() / twice_product);
+            // Rounding may carry the sine a last place past 1. Where a reading is so short that its square is 0 there is no
+            // azimuth, and where the product with the other one is, no angle.
+            if let (Some(sine), true) = (unit_interval(sine), cosine_between <= T::ONE) {
+                visit(Crossing { offset, sine, cosine_between });
             }
         }
     }
@@ -151,6 +152,7 @@ fn unit_interval<T: Scalar>(sine: T) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use core::f64::consts::PI;
+    use std::vec::Vec;
 
     use nalgebra::Isometry2;
 
@@ -179,6 +181,18 @@ mod tests {
         assert!((crossing.offset() - Vector2::new(1.0, 1.0)).norm() < 1e-15);
         assert!((crossing.angle() - PI / 2.0).abs() < 1e-15);
         assert!(crossing.bearing().azimuth().abs() < 1e-15);
+    }
+
+    #[test]
+    fn readings_whose_product_is_no_number_have_no_crossing() {
+        let arc = |x: f32, radius: f32| {
+            let pose = Isometry2::new(Vector2::new(x, 0.0), 0.0);
+            Arc::new(&pose, radius, &Beam::new(1.0).unwrap())
+        };
+        // The second is 10⁻⁴⁰ m long and begins where the first ends.
+        let mut angles = Vec::new();
+        crossings(&arc(0.0, 1e-6), &arc(1e-6, 1e-40), &MinAngle::PAPER, |crossing| angles.push(crossing.angle()));
+        assert_eq!(angles, []);
     }
 
     #[test]
