@@ -7,7 +7,7 @@ pub struct Margins {
     /// significance, if one lies this close to the end of the interval around the echo.
     pub angle: f64,
     /// An arc is left out if one of its crossings lies this close (radians) to 90° off its boresight, where the sine is
-    /// flat: a last place of it is the square root of one in angle.
+    /// flat: a last place of it is the square root of one in angle. Of two shallow arcs it is off by some more.
     pub flat: f64,
     /// An arc is left out if its length is this close to the interval, as a share of it.
     pub length: f64,
@@ -26,7 +26,7 @@ pub struct Margins {
 impl Margins {
     pub const DOUBLE: Self = Self {
         angle: 1e-9,
-        flat: 1e-5,
+        flat: 1e-4,
         length: 1e-9,
         path: 3e-6,
         step: 1e-9,
