@@ -38,16 +38,23 @@ impl Ballot {
         counted
     }
 
-    /// Casts `votes` for the places whose middles lie between two positions, in places from the sector's right edge; for
-    /// the one that holds the interval's middle if it is narrower than that.
-    fn cast<T: Scalar>(&mut self, from: T, to: T, votes: i32) {
+    /// Casts `votes` for the places whose middles lie between two positions, in places from the sector's right edge. Whether
+    /// there are any.
+    fn cast<T: Scalar>(&mut self, from: T, to: T, votes: i32) -> bool {
         let (first, end) = ((from + T::HALF).to_count() as usize, (to + T::HALF).to_count() as usize);
-        let (first, end) = if first < end {
-            (first, end.min(PLACES))
-        } else {
-            let middle = (((from + to) * T::HALF).to_count() as usize).min(PLACES - 1);
-            (middle, middle + 1)
-        };
+        if first < end {
+            self.add(first, end.min(PLACES), votes);
+        }
+        first < end
+    }
+
+    /// Casts `votes` for the place that holds a position.
+    fn cast_at<T: Scalar>(&mut self, position: T, votes: i32) {
+        let place = (position.to_count() as usize).min(PLACES - 1);
+        self.add(place, place + 1, votes);
+    }
+
+    fn add(&mut self, first: usize, end: usize, votes: i32) {
         if let Some(place) = self.votes.get_mut(first) {
             *place += votes;
         }
@@ -113,12 +120,23 @@ impl<T: Scalar> Sector<T> {
         }
         let inner = roots(ahead, aside, square, if high < length { high } else { length });
         let outer = roots(ahead, aside, square, if low > -length { low } else { -length });
+        // The two sides may go on in each other, along w or behind it. A part too narrow for a place of its own then counts
+        // only where the other one is, too.
+        let meet = high >= length || low <= -length;
+        let (mut counted, mut narrow) = (false, None);
         let mut cast = |from: T, to: T| {
             if from <= to {
                 let admitted = admits(self.direction((from + to) * T::HALF));
                 if admitted {
                     let scale = T::from_count(PLACES as u32 / 2);
-                    ballot.cast((from / self.edge + T::ONE) * scale, (to / self.edge + T::ONE) * scale, votes);
+                    let [from, to] = [from, to].map(|u| (u / self.edge + T::ONE) * scale);
+                    if ballot.cast(from, to, votes) {
+                        counted = true;
+                    } else if meet {
+                        narrow = Some((from + to) * T::HALF);
+                    } else {
+                        ballot.cast_at((from + to) * T::HALF, votes);
+                    }
                 }
             }
         };
@@ -145,6 +163,9 @@ impl<T: Scalar> Sector<T> {
                     cast(-self.edge, clipped(to));
                 }
             }
+        }
+        if let (false, Some(position)) = (counted, narrow) {
+            ballot.cast_at(position, votes);
         }
     }
 
@@ -215,6 +236,21 @@ mod tests {
     #[test]
     fn interval_narrower_than_a_place_is_not_lost() {
         let counted = cast(0.0, 0.2, heading(1.0), [0.95f64.cos(), 0.949_999f64.cos()]);
+        assert_eq!(counted.iter().sum::<i32>(), 7);
+    }
+
+    /// Behind w, 0.3° from the right edge: one side of the interval is narrower than the place in which the other begins.
+    #[test]
+    fn place_in_which_both_sides_of_an_interval_meet_is_counted_once() {
+        let axis = 0.665_131_590_428_767_5;
+        let counted = cast(axis, 1.297_514_094_622_743_7, heading(2.514_915_046_854_537_4) * 0.01, [-0.0102, -0.0092]);
+        assert_eq!(counted[0], 7);
+        assert!(counted.iter().all(|&votes| votes == 0 || votes == 7));
+    }
+
+    #[test]
+    fn interval_about_w_narrower_than_a_place_is_counted_once() {
+        let counted = cast(0.0, 0.2, heading(0.05), [0.999_999_9, 2.0]);
         assert_eq!(counted.iter().sum::<i32>(), 7);
     }
 
