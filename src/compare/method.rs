@@ -9,14 +9,14 @@ use crate::{
     },
     echo::AnyEstimator,
     error::{Error, Result},
-    pipeline::Emit,
+    pipeline::{Emit, History},
 };
 
 /// What can be chosen for all methods.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// H of the local map of the arc-transversal median and of the consensus.
-    pub history: usize,
+    /// Which readings the local map of the arc-transversal median and of the consensus holds.
+    pub history: History,
     /// θmin of the arc-transversal median, and the resolution that the consensus is asked for.
     pub min_angle: MinAngle<f64>,
     /// Standard deviation of a range beyond its rounding, for the consensus, in metres.
@@ -27,7 +27,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { history: 10, min_angle: MinAngle::PAPER, range_error: 0.0, cell: None }
+        Self { history: History::default(), min_angle: MinAngle::PAPER, range_error: 0.0, cell: None }
     }
 }
 

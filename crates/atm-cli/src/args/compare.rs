@@ -5,8 +5,9 @@ use atm::{
 use clap::Args;
 
 use super::{
+    local_map::LocalMapArgs,
     log::{Format, LogArgs},
-    values::{error_length, history, method, min_angle, parameter, positive_length, range_resolution},
+    values::{error_length, method, min_angle, parameter, positive_length, range_resolution},
 };
 
 #[derive(Debug, Args)]
@@ -47,9 +48,8 @@ pub struct Compare {
     pub from: Option<Format>,
     #[command(flatten)]
     pub log: LogArgs,
-    /// H of the local map of atm and consensus
-    #[arg(long, value_name = "N", default_value = "10", value_parser = history)]
-    pub history: usize,
+    #[command(flatten)]
+    pub local_map: LocalMapArgs,
     /// Crossings count from this angle on in atm [default: 30deg]
     #[arg(long, value_name = "A", value_parser = min_angle)]
     pub min_angle: Option<MinAngle<f64>>,

@@ -5,6 +5,7 @@ mod draw;
 mod eval;
 mod fuse;
 mod info;
+mod local_map;
 mod log;
 mod plan;
 mod simulate;

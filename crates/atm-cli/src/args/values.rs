@@ -2,6 +2,7 @@
 
 use std::{fmt::Display, str::FromStr};
 
+use super::local_map::HistoryOption;
 use atm::{
     compare::Name,
     core::{Beam, Kind, MinAngle, RangeResolution, Reflector, Travel},
@@ -9,11 +10,13 @@ use atm::{
     units,
 };
 
-pub fn history(text: &str) -> Result<usize, String> {
+/// A number of readings, or `auto`.
+pub fn history(text: &str) -> Result<HistoryOption, String> {
     let most = LatestSlots::<f64>::MAX_HISTORY;
     match text.parse() {
-        Ok(history) if (1..=most).contains(&history) => Ok(history),
-        _ => Err(format!("{text} is no whole number from 1 to {most}")),
+        _ if text == "auto" => Ok(HistoryOption::Auto),
+        Ok(history) if (1..=most).contains(&history) => Ok(HistoryOption::Most(history)),
+        _ => Err(format!("{text} is neither auto nor in 1..={most}")),
     }
 }
 

@@ -158,7 +158,7 @@ class Fuser:
     def __new__(
         cls,
         rig: Rig | _Path,
-        history: int = 10,
+        history: int | Literal["auto"] | None = None,
         *,
         min_angle: float | None = None,
         range_resolution: float | None = None,
@@ -174,6 +174,8 @@ class Fuser:
         estimator: _Estimator = "atm",
         confidence: float | None = None,
         range_error: float | None = None,
+        reach: float | None = None,
+        preset: Literal["paper"] | None = None,
     ) -> Fuser: ...
     def push(
         self,
@@ -198,7 +200,7 @@ def fuse(
     yaw: ArrayLike,
     *,
     rig: Rig | _Path,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -215,6 +217,8 @@ def fuse(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
 def crossings(
     t: ArrayLike,
@@ -225,7 +229,7 @@ def crossings(
     yaw: ArrayLike,
     *,
     rig: Rig | _Path,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -237,6 +241,8 @@ def crossings(
     min_step: float | None = None,
     drop_held: bool = False,
     sensor_index: ArrayLike | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
 def fuse_file(
     input: _Path,
@@ -247,7 +253,7 @@ def fuse_file(
     summary: _Path | None = None,
     crossings: _Path | None = None,
     max_gap: float | str | None = None,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     max_age: float | str | None = None,
     max_travel: float | str | None = None,
     min_step: float | str | None = None,
@@ -278,6 +284,8 @@ def fuse_file(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | str | None = None,
+    reach: float | str | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> dict[str, Any]: ...
 def plan(
     distance: float,
@@ -318,7 +326,7 @@ def compare(
     truth: _Table | None = None,
     set: dict[str, str | float] | None = None,
     methods: Iterable[str] | str | None = None,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -326,6 +334,8 @@ def compare(
     range_error: float | None = None,
     cell: float | None = None,
     sensor_index: ArrayLike | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> dict[str, dict[str, Any]]: ...
 def _main(argv: Sequence[str]) -> int: ...
 def _restore_rig(
