@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use atm::{
+use atm::{core::Point2, error::Error, pipeline::Defaults};
+use atm_lab::{
     compare::{Assessment, Name, Options as Chosen, Recording, as_json, assess, run},
-    core::Point2,
-    error::Error,
     eval::{Estimate, evaluate as scores},
-    log::truth::{Cause, Truth, TruthPoint},
-    pipeline::Defaults,
+    truth::{Cause, Truth, TruthPoint},
 };
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyDict};
 use serde_json::Value;

@@ -1,13 +1,11 @@
-use atm::{
-    compare::Name,
-    core::{MinAngle, RangeResolution},
-};
+use atm::core::{MinAngle, RangeResolution};
+use atm_lab::compare::Name;
 use clap::Args;
 
 use super::{
     local_map::LocalMapArgs,
     log::{Format, LogArgs},
-    values::{error_length, method, min_angle, parameter, positive_length, range_resolution},
+    values::{error_length, min_angle, parameter, positive_length, range_resolution},
 };
 
 #[derive(Debug, Args)]
@@ -65,4 +63,9 @@ pub struct Compare {
     /// No progress
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+fn method(text: &str) -> Result<Name, String> {
+    let known = || Name::ALL.map(Name::word).join(", ");
+    Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
 }

@@ -3,10 +3,10 @@
 mod files;
 mod table;
 
-use atm::{
+use atm::core::MinAngle;
+use atm_lab::{
     compare::{Assessment, Name, Options, Outcome as Said, Recording, as_json, assess, run as run_method},
-    core::MinAngle,
-    log::truth::Truth,
+    truth::Truth,
     world::World,
 };
 
