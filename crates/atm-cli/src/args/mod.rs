@@ -9,6 +9,7 @@ mod log;
 mod plan;
 mod simulate;
 mod values;
+mod view;
 
 use clap::{Parser, Subcommand};
 
@@ -16,10 +17,11 @@ pub use self::{
     compare::Compare,
     draw::{Draw, PanelSpec},
     eval::Eval,
-    fuse::{Emit, Fuse, NoneOption, TwoOption},
+    fuse::{Emit, Fuse, HeldOption, NoneOption, TwoOption},
     info::Info,
     plan::Plan,
     simulate::Simulate,
+    view::View,
 };
 
 /// Sharp echo points from wide-beam range sensors on a moving robot: the arc-transversal median.
@@ -52,4 +54,6 @@ pub enum Command {
     Compare(Box<Compare>),
     /// Draw walls, path, arcs, crossings and echoes
     Draw(Box<Draw>),
+    /// Replay a log in the browser: one page, offline
+    View(Box<View>),
 }

@@ -7,6 +7,7 @@ pub mod fuse;
 pub mod info;
 pub mod plan;
 pub mod simulate;
+pub mod view;
 
 use atm::error::Error;
 
