@@ -95,9 +95,9 @@ pub const MARKS: [Style; 10] = [
     style("center", "center (no crossing)", Shape::Dot, 0xd5_5e_00, 0xf0_7f_2e),
     style("near", "near", Shape::Square, 0xb5_5d_8d, 0xcc_79_a7),
     style("pair", "pair", Shape::Triangle, 0xb0_7a_00, 0xe6_9f_00),
-    style("median", "median", Shape::Disc, 0x00_72_b2, 0x45_a2_e0),
-    // Over the median's disc: under it, a thin cross is not seen.
+    // Its arms reach out from under a disc.
     style("single", "single", Shape::Plus, 0x11_11_11, 0xf2_f2_f2),
+    style("median", "median", Shape::Disc, 0x00_72_b2, 0x45_a2_e0),
     style("wall", "wall", Shape::Nabla, 0x00_8a_64, 0x1f_c0_92),
     style("point", "point", Shape::Diamond, 0x00_72_b2, 0x45_a2_e0),
 ];

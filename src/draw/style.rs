@@ -116,7 +116,7 @@ impl Mark {
             Self::SmallDisc => path.circle(x, y, 2.8),
             Self::Speck => path.circle(x, y, 1.7),
             Self::Circle => path.circle(x, y, 3.2),
-            Self::Plus => path.add('M', &[x - 4.5, y]).add('h', &[9.0]).add('m', &[-4.5, -4.5]).add('v', &[9.0]),
+            Self::Plus => path.add('M', &[x - 5.5, y]).add('h', &[11.0]).add('m', &[-5.5, -5.5]).add('v', &[11.0]),
             Self::Tick => {
                 path.add('M', &[x - 2.5, y - 2.5]).add('l', &[5.0, 5.0]).add('m', &[0.0, -5.0]).add('l', &[-5.0, 5.0])
             }

@@ -96,9 +96,9 @@ export function drawBeams(ink: Ink, view: View, drive: Drive, readings: number[]
     ink.moveTo(view.px(drive.sx[reading]), view.py(drive.sy[reading]));
     rim(ink, view, drive, reading);
     ink.closePath();
-    ink.globalAlpha = 0.1;
+    ink.globalAlpha = 0.07;
     ink.fill();
-    ink.globalAlpha = 0.3;
+    ink.globalAlpha = 0.25;
     ink.stroke();
   }
   ink.globalAlpha = 1;
@@ -214,6 +214,8 @@ export function drawGap(
   ink.moveTo(...at(0, 0));
   ink.lineTo(...at(width, 0));
   ink.stroke();
+  const [x, y] = at(width / 2, 0);
+  if (!(x > 0 && y > 0 && x < view.width * view.ratio && y < view.height * view.ratio)) return;
   const words = found > 0 ? `free: ${length(found, units)} of ${length(width, units)}` : "no echoes on its jambs";
   label(ink, view, words, at(width / 2, ux >= 0 ? depth : -depth), color, styles);
 }

@@ -92,10 +92,12 @@ export class Legend {
   /** What is shown and how many of each kind there are at a pose. */
   update(state: State, methods: Method[], pose: number): void {
     for (const [name, { button, number }] of this.buttons) {
-      button.setAttribute("aria-pressed", String(state.shows(name)));
+      const pressed = String(state.shows(name));
+      if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
       const kinds = methods.flatMap((method) => method.kinds.filter((kind) => kind.name === name));
       const counts = [...new Set(kinds)].map((kind) => upper(kind.at, pose));
-      if (counts.length > 0) number.textContent = counts.map((count) => count.toLocaleString("en")).join(" + ");
+      const words = counts.map((count) => count.toLocaleString("en")).join(" + ");
+      if (number.textContent !== words) number.textContent = words;
     }
   }
 }

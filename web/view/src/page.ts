@@ -1,3 +1,4 @@
+import type { Box } from "./camera.ts";
 import { byId, make } from "./dom.ts";
 import type { Drive, Method } from "./drive.ts";
 import { upper } from "./drive.ts";
@@ -14,6 +15,8 @@ import { distance, seconds, settings, summary } from "./summary.ts";
 const SPEEDS = [0.25, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 /** About so many seconds a replay takes when nobody has chosen its speed. */
 const WATCHED = 20;
+/** So long, in milliseconds, nothing changes before what is shown is put into words. */
+const CALM = 120;
 /** How near to a mark the pointer has to be, in pixels; a finger is wider. */
 const REACH = 9;
 const FINGER = 22;
@@ -36,14 +39,18 @@ export class Page {
   private readonly shown: Shown[] = [];
   private readonly slider = byId("time", HTMLInputElement);
   private readonly card = byId("card", HTMLElement);
+  private readonly everything: Box;
   private two = true;
   private due = false;
   private held = false;
   private last = 0;
-  private fitted = false;
+  private describing = 0;
+  /** The camera as everything was last fitted into the panels. */
+  private fitted = "";
 
   constructor(private readonly drive: Drive) {
     this.styles = new Styles(drive.said);
+    this.everything = extent(drive) ?? [-1, -1, 1, 1];
     this.state.units = drive.said.units;
     const methods = drive.methods;
     this.state.methods = [methods[0], methods[1] ?? methods[0]];
@@ -94,15 +101,15 @@ export class Page {
   }
 
   private addPanel(index: number): void {
-    const canvases = [0, 1, 2].map(() => make("canvas", "", { "aria-hidden": "true" }));
+    const canvas = make("canvas", "", { "aria-hidden": "true" });
     const scale = make("div", "", { class: "scale", "aria-hidden": "true" }, make("span"));
-    const stage = make("div", "", { class: "stage", role: "img" }, ...canvases, scale);
+    const stage = make("div", "", { class: "stage", role: "img" }, canvas, scale);
     const label = index === 0 ? "Method of the first panel" : "Method of the second panel";
     const select = make("select", "", { "aria-label": label });
     this.drive.methods.forEach((method, i) => { select.append(make("option", method.words, { value: String(i) })); });
     const words = make("span");
     byId("panels", HTMLElement).append(make("figure", "", {}, make("figcaption", "", {}, select, words), stage));
-    const panel = new Panel([canvases[0], canvases[1], canvases[2]], this.drive, this.styles);
+    const panel = new Panel(canvas, this.drive, this.styles);
     this.shown.push({ panel, stage, select, words, scale });
     select.value = String(this.drive.methods.indexOf(this.state.methods[index]));
     select.addEventListener("change", () => {
@@ -176,6 +183,15 @@ export class Page {
     });
   }
 
+  /** What keys zoom about: the chosen echo, else the middle of the panel. */
+  private middle(): [number, number] {
+    const { chosen, camera } = this.state;
+    const { width, height } = this.shown[0].panel;
+    if (!chosen) return [width / 2, height / 2];
+    const { method, echo } = chosen;
+    return [width / 2 + (method.x[echo] - camera.x) * camera.scale, height / 2 - (method.y[echo] - camera.y) * camera.scale];
+  }
+
   /** Whether the key meant something here. */
   private key(event: KeyboardEvent): boolean {
     if (event.ctrlKey || event.altKey || event.metaKey || byId("keys", HTMLDialogElement).open) return false;
@@ -184,7 +200,7 @@ export class Page {
     if (target instanceof HTMLSelectElement) return false;
     if (target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter")) return false;
     const zoom = (factor: number) => {
-      this.state.camera.zoom(factor, width / 2, height / 2, width, height);
+      this.state.camera.zoom(factor, ...this.middle(), width, height);
       this.redraw();
     };
     const acts: Record<string, () => void> = {
@@ -265,7 +281,8 @@ export class Page {
     this.render();
     const panels = this.panels().map(({ panel }) => panel);
     const stem = (this.drive.said.name.split(/[/\\]/).pop() ?? "atm").replace(/\.[^.]*$/, "") || "atm";
-    save(picture(this.drive, panels, this.state, this.styles), `${stem}.png`);
+    const stacked = panels.length > 1 && this.shown[1].stage.offsetTop > this.shown[0].stage.offsetTop;
+    save(picture(this.drive, panels, stacked, this.state, this.styles), `${stem}.png`);
   }
 
   private copy(): void {
@@ -287,16 +304,31 @@ export class Page {
   }
 
   private resize(): void {
+    this.arrange();
     for (const { panel } of this.panels()) panel.resize();
-    if (!this.fitted || this.shown[0].panel.fitted === 0) this.fit();
+    const { x, y, scale } = this.state.camera;
+    // Somebody has moved it: it stays.
+    if (this.fitted === `${x} ${y} ${scale}` || this.fitted === "") this.fit();
     this.render();
+  }
+
+  /** Above one another where more can be seen so: a drive along a corridor is wide. */
+  private arrange(): void {
+    const [left, bottom, right, top] = this.everything;
+    const [width, height] = [Math.max(right - left, 0.5), Math.max(top - bottom, 0.5)];
+    const panels = byId("panels", HTMLElement);
+    const [wide, high] = [panels.clientWidth, Math.max(220, innerHeight - 232)];
+    const beside = Math.min(wide / 2 / width, high / height);
+    const above = Math.min(wide / width, (high / 2 - 30) / height);
+    panels.classList.toggle("stacked", this.two && above > 1.2 * beside);
   }
 
   private fit(): void {
     const { panel } = this.shown[0];
-    this.fitted = panel.width > 0;
-    this.state.camera.fit(extent(this.drive) ?? [-1, -1, 1, 1], panel.width, panel.height);
-    for (const { panel } of this.shown) panel.fitted = this.state.camera.scale;
+    const { camera } = this.state;
+    camera.fit(this.everything, panel.width, panel.height);
+    this.fitted = panel.width > 0 ? `${camera.x} ${camera.y} ${camera.scale}` : "";
+    for (const { panel } of this.shown) panel.fitted = camera.scale;
     this.redraw();
   }
 
@@ -328,14 +360,22 @@ export class Page {
     this.panels().forEach((shown, i) => {
       shown.panel.draw(state.methods[i], state);
       shown.words.textContent = this.words(state.methods[i], pose);
-      this.scale(shown);
     });
+    this.scales();
     this.legend.update(this.state, this.visible(), pose);
     this.slider.value = String(state.time);
     const [now, all] = [seconds(drive.elapsed[pose]), seconds(drive.elapsed[drive.elapsed.length - 1])];
     byId("clock", HTMLOutputElement).textContent = `${now} / ${all}`;
     this.slider.setAttribute("aria-valuetext", `${now} of ${all}`);
     if (!state.playing) this.describe();
+  }
+
+  /** Puts what a panel shows into words, once nothing has changed for a moment. */
+  private describe(): void {
+    clearTimeout(this.describing);
+    this.describing = setTimeout(() => {
+      this.described();
+    }, CALM);
   }
 
   /** What a panel shows, in words: counts by kind, and free widths. */
@@ -349,7 +389,7 @@ export class Page {
   }
 
   /** The same for those who do not see the panels. */
-  private describe(): void {
+  private described(): void {
     const { state, drive } = this;
     const pose = drive.poseAt(state.time);
     this.panels().forEach(({ stage }, i) => {
@@ -363,14 +403,20 @@ export class Page {
     });
   }
 
-  private scale({ panel, scale }: Shown): void {
-    const unit = this.state.units === "in" ? 0.0254 : 1;
-    const room = Math.min(130, panel.width / 4) / (this.state.camera.scale * unit);
+  /** How long a round length is in the panels. */
+  private scales(): void {
+    const { units, camera } = this.state;
+    const unit = units === "in" ? 0.0254 : 1;
+    const room = Math.min(130, this.shown[0].panel.width / 4) / (camera.scale * unit);
     const power = 10 ** Math.floor(Math.log10(room));
     const nice = [5, 2, 1].map((step) => step * power).find((step) => step <= room) ?? power;
-    scale.style.width = `${nice * unit * this.state.camera.scale}px`;
-    const words = this.state.units === "in" ? `${Number(nice.toPrecision(3))} in` : length(nice, "m", nice < 1 ? 0 : 0);
-    if (scale.firstElementChild) scale.firstElementChild.textContent = words;
+    const words = units === "in" ? `${Number(nice.toPrecision(3))} in` : length(nice, "m", 0);
+    const width = `${(nice * unit * camera.scale).toFixed(1)}px`;
+    for (const { scale } of this.shown) {
+      if (scale.style.width !== width) scale.style.width = width;
+      const number = scale.firstElementChild;
+      if (number && number.textContent !== words) number.textContent = words;
+    }
   }
 
   private over(index: number, x: number, y: number, tapped: boolean): void {
@@ -408,6 +454,12 @@ export class Page {
     const echo = neighbour(state.methods[index], pose, state, state.chosen?.echo ?? null, step);
     if (echo === null) return;
     this.held = true;
+    // Into the panel, where it is outside.
+    const [x, y] = [state.methods[index].x[echo], state.methods[index].y[echo]];
+    const { camera } = state;
+    const { width, height } = this.shown[index].panel;
+    const [off, up] = [Math.abs(x - camera.x), Math.abs(y - camera.y)];
+    if (off * camera.scale > 0.47 * width || up * camera.scale > 0.47 * height) [camera.x, camera.y] = [x, y];
     this.choose(index, echo);
   }
 
@@ -423,9 +475,12 @@ export class Page {
     const view = panel.view(state);
     const { method, echo } = state.chosen;
     const [x, y] = [box.left + view.px(method.x[echo]) / view.ratio, box.top + view.py(method.y[echo]) / view.ratio];
-    const size = card.getBoundingClientRect();
-    const right = x + 24 + size.width < innerWidth - 8;
-    card.style.left = `${Math.max(8, right ? x + 24 : x - 24 - size.width)}px`;
-    card.style.top = `${Math.min(Math.max(8, y - size.height / 2), innerHeight - size.height - 8)}px`;
+    card.dataset["at"] = `${x.toFixed(1)} ${y.toFixed(1)}`;
+    const sensor = box.top + view.py(this.drive.sy[method.reading[echo]]) / view.ratio;
+    const { width, height } = card.getBoundingClientRect();
+    // On the side of the echo that the beam does not come from.
+    const fit = (at: number, size: number, room: number) => `${Math.max(8, Math.min(at, room - size - 8))}px`;
+    card.style.left = fit(x + 22 + width < innerWidth ? x + 22 : x - 22 - width, width, innerWidth);
+    card.style.top = fit(sensor > y ? y - height + 6 : y - 6, height, innerHeight);
   }
 }

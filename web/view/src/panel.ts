@@ -12,35 +12,31 @@ import type { Styles } from "./styles.ts";
 const MANY = [3_000, 20_000, 60_000];
 const SIZES = [1.1, 0.9, 0.75, 0.6];
 
-/** What one panel shows, on three canvases above one another: lines and areas, marks, and what is in front of the marks. */
+/** What one panel shows: lines and areas, marks over them, and in front what somebody asks for. */
 export class Panel {
-  private readonly inks: [CanvasRenderingContext2D, CanvasRenderingContext2D, CanvasRenderingContext2D];
+  private readonly ink: CanvasRenderingContext2D;
   private readonly sheet = new Sheet();
   width = 0;
   height = 0;
   ratio = 1;
 
   constructor(
-    private readonly canvases: [HTMLCanvasElement, HTMLCanvasElement, HTMLCanvasElement],
+    private readonly canvas: HTMLCanvasElement,
     private readonly drive: Drive,
     private readonly styles: Styles,
   ) {
-    this.inks = canvases.map((canvas) => {
-      const ink = canvas.getContext("2d");
-      if (!ink) throw new Error("this browser has no canvas");
-      return ink;
-    }) as typeof this.inks;
+    const ink = canvas.getContext("2d", { alpha: false });
+    if (!ink) throw new Error("this browser has no canvas");
+    this.ink = ink;
   }
 
   /** Takes the size that the page gives it. */
   resize(): void {
-    const box = this.canvases[0].getBoundingClientRect();
+    const box = this.canvas.getBoundingClientRect();
     this.ratio = Math.min(window.devicePixelRatio || 1, 2);
     [this.width, this.height] = [box.width, box.height];
-    for (const canvas of this.canvases) {
-      canvas.width = Math.max(1, Math.round(box.width * this.ratio));
-      canvas.height = Math.max(1, Math.round(box.height * this.ratio));
-    }
+    this.canvas.width = Math.max(1, Math.round(box.width * this.ratio));
+    this.canvas.height = Math.max(1, Math.round(box.height * this.ratio));
   }
 
   view(state: State): View {
@@ -52,24 +48,23 @@ export class Panel {
     const { drive, styles } = this;
     const view = this.view(state);
     const pose = drive.poseAt(state.time);
-    const [base, marks, front] = this.inks;
-    base.fillStyle = styles.ground.paper;
-    base.fillRect(0, 0, this.canvases[0].width, this.canvases[0].height);
-    if (state.shows("walls")) drawWalls(base, view, drive, styles);
-    if (state.shows("path")) drawPath(base, view, drive, pose, styles);
+    const { ink, canvas } = this;
+    ink.fillStyle = styles.ground.paper;
+    ink.fillRect(0, 0, canvas.width, canvas.height);
+    if (state.shows("walls")) drawWalls(ink, view, drive, styles);
+    if (state.shows("path")) drawPath(ink, view, drive, pose, styles);
     const present = state.shows("arcs") || state.shows("crossings") ? drive.present(pose) : [];
-    if (state.shows("arcs")) drawArcs(base, view, drive, present, styles);
-    if (state.shows("cones")) drawBeams(base, view, drive, drive.latest(pose), styles);
-    this.sheet.clear(this.canvases[1].width, this.canvases[1].height);
+    if (state.shows("arcs")) drawArcs(ink, view, drive, present, styles);
+    if (state.shows("cones")) drawBeams(ink, view, drive, drive.latest(pose), styles);
+    this.sheet.clear(canvas.width, canvas.height);
     this.stamp(method, view, pose, present, state);
-    this.sheet.show(marks);
-    front.clearRect(0, 0, this.canvases[2].width, this.canvases[2].height);
-    if (state.shows("robot")) drawRobot(front, view, drive, state.time, styles);
+    this.sheet.show(ink);
+    if (state.shows("robot")) drawRobot(ink, view, drive, state.time, styles);
     for (const line of lines(drive, state)) {
       const found = gap(line, shown(method, pose, state), drive.said.depth, drive.said.jamb);
-      drawGap(front, view, drive, line, found, styles, state.units);
+      drawGap(ink, view, drive, line, found, styles, state.units);
     }
-    if (state.chosen) drawChosen(front, view, drive, state.chosen, state.chosen.method === method, styles);
+    if (state.chosen) drawChosen(ink, view, drive, state.chosen, state.chosen.method === method, styles);
   }
 
   private stamp(method: Method, view: View, pose: number, present: number[], state: State): void {
@@ -119,22 +114,30 @@ export class Panel {
   /** Pixels in a metre when everything is in the panel. */
   fitted = 1;
 
-  /** All three canvases on one. */
-  flatten(onto: CanvasRenderingContext2D, x: number, y: number): void {
-    for (const canvas of this.canvases) onto.drawImage(canvas, x, y);
+  /** What is shown, onto another canvas. */
+  copy(onto: CanvasRenderingContext2D, x: number, y: number): void {
+    onto.drawImage(this.canvas, x, y);
   }
 }
 
-/** What a panel shows when everything is shown: the echoes, the path, and the walls where they are known. */
+/** Walls are fitted into the panel as far as this beyond the rest, in parts of its longer side. */
+const WALL_ROOM = 0.3;
+
+/** What a panel shows when everything is shown: the echoes and the path, and the walls where they are near. */
 export function extent(drive: Drive): Box | null {
   let box = around(drive.x, drive.y);
   for (const method of drive.methods) box = union(box, around(method.x, method.y));
-  for (const wall of drive.said.world?.walls ?? []) {
-    const { from, to, center, radius = 0 } = wall;
-    if (from && to) {
-      box = union(box, [Math.min(from[0], to[0]), Math.min(from[1], to[1]), Math.max(from[0], to[0]), Math.max(from[1], to[1])]);
-    }
+  const near = box;
+  for (const { from, to, center, radius = 0 } of drive.said.world?.walls ?? []) {
+    if (from && to) box = union(box, [Math.min(from[0], to[0]), Math.min(from[1], to[1]), Math.max(from[0], to[0]), Math.max(from[1], to[1])]);
     if (center) box = union(box, [center[0] - radius, center[1] - radius, center[0] + radius, center[1] + radius]);
   }
-  return box;
+  if (!near || !box) return box;
+  const room = WALL_ROOM * Math.max(near[2] - near[0], near[3] - near[1], 1);
+  return [
+    Math.max(box[0], near[0] - room),
+    Math.max(box[1], near[1] - room),
+    Math.min(box[2], near[2] + room),
+    Math.min(box[3], near[3] + room),
+  ];
 }

@@ -7,11 +7,13 @@ import type { Styles } from "./styles.ts";
 const MARGIN = 16;
 const LINE = 24;
 
-/** The panels beside one another, with a title, what the marks mean, and the command. */
-export function picture(drive: Drive, panels: Panel[], state: State, styles: Styles): HTMLCanvasElement {
+/** The panels as they stand on the page, with a title, what the marks mean, and the command. */
+export function picture(drive: Drive, panels: Panel[], stacked: boolean, state: State, styles: Styles): HTMLCanvasElement {
   const ratio = Math.max(...panels.map((panel) => panel.ratio));
-  const width = panels.reduce((sum, panel) => sum + panel.width, 0) + MARGIN * (panels.length + 1);
-  const height = MARGIN + 2 * LINE + Math.max(...panels.map((panel) => panel.height)) + 2 * LINE + MARGIN;
+  const [first] = panels;
+  const [across, down] = stacked ? [1, panels.length] : [panels.length, 1];
+  const width = across * (first.width + MARGIN) + MARGIN;
+  const height = MARGIN + LINE + down * (first.height + LINE + MARGIN) + 2 * LINE;
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
   const ink = canvas.getContext("2d");
@@ -27,21 +29,19 @@ export function picture(drive: Drive, panels: Panel[], state: State, styles: Sty
   };
   const name = drive.said.name.split(/[/\\]/).pop() ?? "";
   text(name, MARGIN, MARGIN + 14, "600 18px", ground.text, width - 2 * MARGIN);
-  const top = MARGIN + 2 * LINE;
-  let left = MARGIN;
   panels.forEach((panel, i) => {
-    const method = state.methods[i];
-    text(method.words, left, top - 9, "600 15px", ground.text, panel.width);
+    const left = MARGIN + (stacked ? 0 : i * (first.width + MARGIN));
+    const top = MARGIN + 2 * LINE + (stacked ? i * (first.height + LINE + MARGIN) : 0);
+    text(state.methods[i].words, left, top - 9, "600 15px", ground.text, panel.width);
     ink.save();
     ink.setTransform(1, 0, 0, 1, 0, 0);
-    panel.flatten(ink, Math.round(left * ratio), Math.round(top * ratio));
+    panel.copy(ink, Math.round(left * ratio), Math.round(top * ratio));
     ink.restore();
     ink.strokeStyle = ground.muted;
     ink.lineWidth = 0.5;
     ink.strokeRect(left, top, panel.width, panel.height);
-    left += panel.width + MARGIN;
   });
-  const foot = height - MARGIN - LINE;
+  const foot = height - LINE - 8;
   legend(ink, state.methods, state, styles, MARGIN, foot - 4, width - 2 * MARGIN);
   text(drive.said.command, MARGIN, foot + LINE - 2, "12px", ground.muted, width - 2 * MARGIN);
   return canvas;

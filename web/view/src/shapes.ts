@@ -6,7 +6,7 @@ export function isStroked(shape: ShapeName): boolean {
 }
 
 /** Half the room that a shape takes, in pixels of the page. */
-export const REACH = 6;
+export const REACH = 7;
 
 /** The shape about (`x`, `y`), `size` times as large as usual. */
 export function trace(path: CanvasPath, shape: ShapeName, x: number, y: number, size: number): void {
@@ -26,10 +26,10 @@ export function trace(path: CanvasPath, shape: ShapeName, x: number, y: number, 
     path.arc(x, y, radius * size, 0, 2 * Math.PI);
   };
   const shapes: Record<ShapeName, () => void> = {
-    disc: () => { circle(3.5); },
+    disc: () => { circle(3.9); },
     dot: () => { circle(2.6); },
     speck: () => { circle(1.5); },
-    plus: () => { line(-4.5, 0, 4.5, 0); line(0, -4.5, 0, 4.5); },
+    plus: () => { line(-5.6, 0, 5.6, 0); line(0, -5.6, 0, 5.6); },
     cross: () => { line(-2.6, -2.6, 2.6, 2.6); line(-2.6, 2.6, 2.6, -2.6); },
     square: () => { polygon([-2.9, -2.9], [2.9, -2.9], [2.9, 2.9], [-2.9, 2.9]); },
     triangle: () => { polygon([0, -4], [3.8, 2.6], [-3.8, 2.6]); },
@@ -49,9 +49,7 @@ export function draw(ink: Ink, shape: ShapeName, x: number, y: number, size: num
   ink.lineJoin = "round";
   ink.lineCap = "round";
   if (isStroked(shape)) {
-    ink.strokeStyle = rim;
-    ink.lineWidth = 3.2 * size;
-    ink.stroke();
+    // Without a rim, which would hide the marks below: a cross lies on a disc, and both are seen.
     ink.strokeStyle = color;
     ink.lineWidth = 1.5 * size;
     ink.stroke();

@@ -10,6 +10,8 @@ interface Stamp {
 }
 
 const MOST_STAMPS = 200;
+/** Of more marks at once, pixels are covered or not: none is half covered, which takes time. */
+const SMOOTH = 20_000;
 
 /** Pixels onto which marks are stamped: a hundred thousand of them in a few milliseconds, where paths would take ten times as long. */
 export class Sheet {
@@ -19,6 +21,7 @@ export class Sheet {
   private taken = new Uint8Array(1);
   private readonly stamps = new Map<string, Stamp>();
   private mark = 0;
+  private readonly ink = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
 
   /** Empties the sheet, which is as large as the canvas from now on. */
   clear(width: number, height: number): void {
@@ -33,9 +36,14 @@ export class Sheet {
     this.mark = 0;
   }
 
-  /** Puts the sheet onto a canvas in place of what is on it. */
+  /** Lays the sheet over what is on a canvas. */
   show(ink: CanvasRenderingContext2D): void {
-    ink.putImageData(this.image, 0, 0);
+    const { width, height } = this.image;
+    const canvas = this.ink?.canvas;
+    if (!this.ink || !canvas) return;
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    this.ink.putImageData(this.image, 0, 0);
+    ink.drawImage(canvas, 0, 0);
   }
 
   /** Stamps the first `count` points. */
@@ -48,7 +56,7 @@ export class Sheet {
     color: string,
     rim: string,
   ): void {
-    const stamp = this.stamp(shape, Math.round(size * view.ratio * 8) / 8, color, rim);
+    const stamp = this.stamp(shape, Math.round(size * view.ratio * 8) / 8, color, rim, count <= SMOOTH);
     const { width, height } = this.image;
     const { k, left, top } = view;
     const reach = Math.ceil(REACH * size * view.ratio);
@@ -88,18 +96,18 @@ export class Sheet {
     }
   }
 
-  private stamp(shape: ShapeName, size: number, color: string, rim: string): Stamp {
-    const key = `${shape} ${size} ${color} ${rim}`;
+  private stamp(shape: ShapeName, size: number, color: string, rim: string, smooth: boolean): Stamp {
+    const key = `${shape} ${size} ${color} ${rim} ${String(smooth)}`;
     const known = this.stamps.get(key);
     if (known) return known;
     if (this.stamps.size > MOST_STAMPS) this.stamps.clear();
-    const stamp = made(shape, size, color, rim);
+    const stamp = made(shape, size, color, rim, smooth);
     this.stamps.set(key, stamp);
     return stamp;
   }
 }
 
-function made(shape: ShapeName, size: number, color: string, rim: string): Stamp {
+function made(shape: ShapeName, size: number, color: string, rim: string, smooth: boolean): Stamp {
   const reach = Math.ceil(REACH * size);
   const side = 2 * reach + 1;
   const canvas = document.createElement("canvas");
@@ -110,10 +118,10 @@ function made(shape: ShapeName, size: number, color: string, rim: string): Stamp
     draw(ink, shape, reach + 0.5, reach + 0.5, size, color, rim);
     const pixels = new Uint32Array(ink.getImageData(0, 0, side, side).data.buffer);
     pixels.forEach((pixel, i) => {
-      if (pixel >>> 24 < 8) return;
+      if (pixel >>> 24 < (smooth ? 8 : 128)) return;
       dx.push((i % side) - reach);
       dy.push(Math.floor(i / side) - reach);
-      colors.push(pixel);
+      colors.push(smooth ? pixel : (pixel | 0xff000000) >>> 0);
     });
   }
   return { dx: Int16Array.from(dx), dy: Int16Array.from(dy), color: Uint32Array.from(colors) };

@@ -17,8 +17,10 @@ export function summary(table: HTMLTableElement, drive: Drive, styles: Styles): 
     rows.push(line);
   };
   const number = (value: number | undefined) => (value === undefined ? "" : value.toLocaleString("en"));
-  row("readings in the local map", methods.map((method) => number(method.said.counts?.readings)));
-  row("of them without an echo", methods.map((method) => number(method.said.counts?.no_echo)));
+  // All methods are given the same readings.
+  const counted = methods.find((method) => method.said.counts)?.said.counts;
+  row("readings in the local map", methods.map(() => number(counted?.readings)));
+  row("of them without an echo", methods.map(() => number(counted?.no_echo)));
   for (const kind of new Set(methods.flatMap((method) => method.said.kinds))) {
     const count = (method: (typeof methods)[0]) => {
       if (method.said.counts) return number(method.said.counts.echoes[kind]);

@@ -12,8 +12,8 @@ import { longDrive } from "./drive.mjs";
 const { ATM, CHROMIUM, ATM_SCREENSHOTS } = process.env;
 const [, , directory] = process.argv;
 const root = join(dirname(fileURLToPath(import.meta.url)), "../../..");
-/** Frames a second that a test of scrubbing asks for. A busy machine is no slow page: docs/view.md has what was measured on a free one. */
-const LEAST_FRAMES = 15;
+/** Milliseconds of its thread that a frame may take, for 30 a second. The clock on the wall depends on what else the machine does. */
+const LONGEST_FRAME = 33;
 
 function view(input, output, ...args) {
   execFileSync(ATM, ["view", input, "--rig", "nomad200", "-o", output, "--quiet", ...args], { cwd: directory });
@@ -50,17 +50,28 @@ async function test(words, file, options, body) {
 const shot = async (page, name) => {
   if (ATM_SCREENSHOTS) await page.screenshot({ path: join(ATM_SCREENSHOTS, `${name}.png`) });
 };
-const label = (page, index) => page.locator(".stage").nth(index).getAttribute("aria-label");
+/** What is said of a panel to those who do not see it: a moment after it has changed. */
+const label = async (page, index) => {
+  await page.waitForTimeout(300);
+  return page.locator(".stage").nth(index).getAttribute("aria-label");
+};
 const caption = (page, index) => page.locator("figcaption span").nth(index).textContent();
 const pressed = (page, layer) => page.locator(`#layers [data-layer="${layer}"]`).getAttribute("aria-pressed");
 const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-/** Pixels of a panel's marks that are not empty. */
+/** Pixels of a panel that have a colour, as marks have. */
 const inked = (page, index) =>
   page.evaluate((i) => {
-    const canvas = document.querySelectorAll(".stage")[i].querySelectorAll("canvas")[1];
-    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const canvas = document.querySelectorAll(".stage")[i].querySelector("canvas");
+    // A copy: to read a canvas back makes it slow from then on.
+    const copy = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+    [copy.canvas.width, copy.canvas.height] = [canvas.width, canvas.height];
+    copy.drawImage(canvas, 0, 0);
+    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
     let count = 0;
-    for (let at = 3; at < data.length; at += 4) count += data[at] > 0;
+    for (let at = 0; at < data.length; at += 4) {
+      const rgb = data.subarray(at, at + 3);
+      count += Math.max(...rgb) - Math.min(...rgb) > 60;
+    }
     return count;
   }, index);
 const seek = (page, share) =>
@@ -132,14 +143,17 @@ await test("the slider and the keys scrub", doorway, {}, async (page) => {
 
 await test("hovering, tapping and keys tell of an echo", doorway, {}, async (page) => {
   const box = await page.locator(".stage").nth(1).boundingBox();
-  let found = null;
-  for (let y = box.y + 20; !found && y < box.y + box.height - 20; y += 11) {
-    for (let x = box.x + 20; !found && x < box.x + box.width - 20; x += 11) {
-      await page.mouse.move(x, y);
-      if (await page.isVisible("#card")) found = [x, y];
-    }
-  }
-  assert.ok(found, "no echo under the pointer anywhere");
+  // Where an echo is: the keys choose one.
+  await page.keyboard.press("]");
+  const found = (await page.getAttribute("#card", "data-at")).split(" ").map(Number);
+  await page.keyboard.press("Escape");
+  assert.ok(!(await page.isVisible("#card")));
+  await page.mouse.move(box.x + 3, box.y + 3);
+  await page.mouse.move(found[0] + 3, found[1] + 2);
+  assert.ok(await page.isVisible("#card"), "no echo under the pointer");
+  await page.mouse.move(box.x + 3, box.y + 3);
+  assert.ok(!(await page.isVisible("#card")), "the pointer has left");
+  await page.mouse.move(...found);
   const words = await page.textContent("#card");
   for (const name of ["kind", "azimuth", "resolution", "significance", "crossings"]) assert.ok(words.includes(name), words);
   await page.mouse.click(...found);
@@ -212,7 +226,11 @@ await test("the picture is saved", doorway, {}, async (page) => {
 
 await test("dark where the system is", doorway, { colorScheme: "dark" }, async (page) => {
   const ground = () =>
-    page.evaluate(() => [...document.querySelector("canvas").getContext("2d").getImageData(2, 2, 1, 1).data].slice(0, 3));
+    page.evaluate(() => {
+      const copy = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+      copy.drawImage(document.querySelector(".stage canvas"), 0, 0);
+      return [...copy.getImageData(2, 2, 1, 1).data].slice(0, 3);
+    });
   assert.ok(Math.max(...(await ground())) < 64);
   await shot(page, "doorway-dark");
   await page.emulateMedia({ colorScheme: "light" });
@@ -243,6 +261,7 @@ execFileSync(ATM, ["view", "<b>nasty<!--.csv", "--rig", "nasty.toml", "-o", "nas
 await test("words of a log are never HTML", join(directory, "nasty.html"), {}, async (page) => {
   assert.equal(await page.title(), "<b>nasty<!--.csv");
   assert.equal(await page.textContent("#name"), "<b>nasty<!--.csv");
+  await page.click('#layers [data-layer="center"]');
   await page.keyboard.press("]");
   assert.ok((await page.textContent("#card")).includes(nasty));
   assert.equal(await page.locator("img").count(), 0);
@@ -252,7 +271,13 @@ await test("words of a log are never HTML", join(directory, "nasty.html"), {}, a
 await writeFile(join(directory, "long.csv"), longDrive(100_000));
 const long = view("long.csv", "long.html", "--methods", "centerline,atm");
 await test("a hundred thousand readings scrub", long, {}, async (page) => {
-  const [frames, drawn] = await page.evaluate(async () => {
+  await page.click('#layers [data-layer="center"]');
+  const devtools = await page.context().newCDPSession(page);
+  await devtools.send("Performance.enable", { timeDomain: "threadTicks" });
+  const worked = async () =>
+    (await devtools.send("Performance.getMetrics")).metrics.find(({ name }) => name === "TaskDuration").value;
+  const before = await worked();
+  const [frames, count] = await page.evaluate(async () => {
     const slider = document.querySelector("#time");
     const next = () => new Promise((done) => requestAnimationFrame(done));
     await next();
@@ -262,11 +287,12 @@ await test("a hundred thousand readings scrub", long, {}, async (page) => {
       slider.dispatchEvent(new Event("input"));
       await next();
     }
-    return [(count / (performance.now() - start)) * 1000, document.querySelector("#clock").textContent];
+    return [(count / (performance.now() - start)) * 1000, count];
   });
+  const longest = (((await worked()) - before) / count) * 1000;
   const size = ((await stat(long)).size / 1e6).toFixed(1);
-  console.log(`      ${frames.toFixed(1)} frames a second, ${size} MB, at ${drawn}`);
-  assert.ok(frames >= LEAST_FRAMES, `${frames} frames a second`);
+  console.log(`      ${frames.toFixed(1)} frames a second, ${longest.toFixed(1)} ms of its thread a frame, ${size} MB`);
+  assert.ok(longest <= LONGEST_FRAME, `${longest} ms a frame`);
   await seek(page, 1);
   await frame(page);
   await shot(page, "long");

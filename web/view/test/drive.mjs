@@ -1,4 +1,4 @@
-// A long drive as a table: twice and more around a hall with pillars, 16 sensors, ranges in whole inches. The same bytes each time.
+// A long drive as a table: eight times around a hall with pillars, 16 sensors, ranges in whole inches. The same bytes each time.
 const INCH = 0.0254;
 const HALL = [-22, -14, 22, 14];
 const PILLARS = Array.from({ length: 24 }, (_, i) => [-17 + (i % 8) * 4.9, -7 + Math.floor(i / 8) * 7, 0.25]);
@@ -26,7 +26,7 @@ export function longDrive(count) {
   const lines = ["t,sensor,range,x,y,yaw"];
   const sweeps = Math.ceil(count / 16);
   for (let i = 0; i < sweeps; i++) {
-    const turn = (i / sweeps) * 2 * Math.PI * 3.3;
+    const turn = (i / sweeps) * 2 * Math.PI * 8.3;
     const [x, y] = [19.2 * Math.cos(turn), 10.6 * Math.sin(turn) + 0.8 * Math.sin(5 * turn)];
     const yaw = Math.atan2(10.6 * Math.cos(turn) + 4 * Math.cos(5 * turn), -19.2 * Math.sin(turn));
     for (let sensor = 0; sensor < 16; sensor++) {

@@ -25,8 +25,8 @@ _STYLES: dict[str, dict[str, Any]] = {
     "center": {"marker": "o", "s": 6, "color": "#d55e00", "linewidths": 0},
     "near": {"marker": "s", "s": 9, "color": "#b55d8d", "linewidths": 0},
     "pair": {"marker": "^", "s": 16, "color": "#b07a00", "linewidths": 0},
+    "single": {"marker": "+", "s": 40, "color": "#111111", "linewidths": 1.0},
     "median": {"marker": "o", "s": 14, "color": "#0072b2", "linewidths": 0},
-    "single": {"marker": "+", "s": 30, "color": "#111111", "linewidths": 1.0},
     "wall": {"marker": "v", "s": 16, "color": "#008a64", "linewidths": 0},
     "point": {"marker": "D", "s": 12, "color": "#0072b2", "linewidths": 0},
 }
