@@ -2,8 +2,8 @@
 pub mod ahead;
 pub mod behind;
 mod buffer;
-mod cell;
-mod columns;
+pub mod cell;
+pub mod columns;
 pub mod content;
 pub mod crossing_log;
 pub mod crossing_table;
@@ -18,7 +18,6 @@ pub mod output;
 pub mod poses;
 mod record;
 pub mod table;
-pub mod truth;
 pub mod writer;
 
 use std::{fs, io, sync::Arc};

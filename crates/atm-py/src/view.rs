@@ -7,8 +7,8 @@ use atm::{
     job::{LogJob, MAX_GAP, McapWishes},
     log::Input,
     pipeline::{Defaults, Emit, Settings},
-    view::{MOST_READINGS, Method, Replay, Units, ViewJob},
 };
+use atm_lab::view::{MOST_READINGS, Method, Replay, Units, ViewJob};
 use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
@@ -23,7 +23,8 @@ use crate::{
 
 /// The page as a text.
 #[pyfunction]
-#[pyo3(signature = (input, command, *, rig=None, poses=None, world=None, set=None, truth=None, methods=None, history=10, min_angle=None,
+#[pyo3(signature = (input, command, *, rig=None, poses=None, world=None, set=None, truth=None, methods=None, history=None, reach=None,
+                    preset=None, min_angle=None,
                     range_resolution=None, range_error=None, units=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn _view(
@@ -36,7 +37,9 @@ pub fn _view(
     set: Option<&Bound<'_, PyDict>>,
     truth: Option<&Bound<'_, PyAny>>,
     methods: Option<&Bound<'_, PyAny>>,
-    #[pyo3(from_py_with = options::history)] history: usize,
+    #[pyo3(from_py_with = options::history)] history: Option<usize>,
+    reach: Option<&Bound<'_, PyAny>>,
+    #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
     min_angle: Option<&Bound<'_, PyAny>>,
     range_resolution: Option<&Bound<'_, PyAny>>,
     range_error: Option<&Bound<'_, PyAny>>,
@@ -46,6 +49,7 @@ pub fn _view(
     let step = quantity("range_resolution", range_resolution, atm::units::length)?.map(RangeResolution::new);
     let step = step.transpose().map_err(|error| raise::value("range_resolution", error))?;
     let methods = chosen(methods)?;
+    let reach = quantity("reach", reach, atm::units::length)?;
     let min_angle = options::min_angle(quantity("min_angle", min_angle, atm::units::angle)?)?;
     let range_error = quantity("range_error", range_error, atm::units::length)?.unwrap_or(0.0);
     let median = AnyEstimator::Median(TransversalMedian { min_angle, ..TransversalMedian::PAPER });
@@ -65,7 +69,13 @@ pub fn _view(
             defaults: Defaults { field_of_view: None, range_resolution: step },
             mcap: McapWishes::default(),
         },
-        settings: Settings { emit: Emit::Settled, history, bounds: Bounds::NONE, estimator: median, strict: false },
+        settings: Settings {
+            emit: Emit::Settled,
+            history: options::LocalMap { history, reach, preset }.history()?,
+            bounds: Bounds::NONE,
+            estimator: median,
+            strict: false,
+        },
         estimators: fused.filter(|(method, _)| methods.contains(method)).map(|(_, estimator)| estimator).collect(),
         methods,
         command,

@@ -1,13 +1,12 @@
-use atm::{
-    core::{MinAngle, RangeResolution},
-    view::{Method, Units},
-};
+use atm::core::{MinAngle, RangeResolution};
+use atm_lab::view::{Method, Units};
 use clap::{Args, ValueEnum};
 
 use super::{
     fuse::HeldOption,
+    local_map::LocalMapArgs,
     log::{Format, LogArgs},
-    values::{error_length, history, min_angle, parameter, range_resolution},
+    values::{error_length, min_angle, parameter, range_resolution},
 };
 
 #[derive(Debug, Args)]
@@ -44,9 +43,8 @@ pub struct View {
     pub from: Option<Format>,
     #[command(flatten)]
     pub log: LogArgs,
-    /// H: the local map holds the last H readings of every sensor
-    #[arg(long, value_name = "N", default_value = "10", value_parser = history)]
-    pub history: usize,
+    #[command(flatten)]
+    pub local_map: LocalMapArgs,
     /// Crossings count from this angle on
     #[arg(long, value_name = "A", default_value = "30deg", value_parser = min_angle)]
     pub min_angle: MinAngle<f64>,

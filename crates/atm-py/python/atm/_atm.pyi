@@ -159,7 +159,7 @@ class Fuser:
     def __new__(
         cls,
         rig: Rig | _Path,
-        history: int = 10,
+        history: int | Literal["auto"] | None = None,
         *,
         min_angle: float | None = None,
         range_resolution: float | None = None,
@@ -175,6 +175,8 @@ class Fuser:
         estimator: _Estimator = "atm",
         confidence: float | None = None,
         range_error: float | None = None,
+        reach: float | None = None,
+        preset: Literal["paper"] | None = None,
     ) -> Fuser: ...
     def push(
         self,
@@ -199,7 +201,7 @@ def fuse(
     yaw: ArrayLike,
     *,
     rig: Rig | _Path,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -216,6 +218,8 @@ def fuse(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
 def crossings(
     t: ArrayLike,
@@ -226,7 +230,7 @@ def crossings(
     yaw: ArrayLike,
     *,
     rig: Rig | _Path,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -238,6 +242,8 @@ def crossings(
     min_step: float | None = None,
     drop_held: bool = False,
     sensor_index: ArrayLike | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
 def fuse_file(
     input: _Path,
@@ -248,7 +254,7 @@ def fuse_file(
     summary: _Path | None = None,
     crossings: _Path | None = None,
     max_gap: float | str | None = None,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     max_age: float | str | None = None,
     max_travel: float | str | None = None,
     min_step: float | str | None = None,
@@ -279,6 +285,8 @@ def fuse_file(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | str | None = None,
+    reach: float | str | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> dict[str, Any]: ...
 def plan(
     distance: float,
@@ -319,7 +327,7 @@ def compare(
     truth: _Table | None = None,
     set: dict[str, str | float] | None = None,
     methods: Iterable[str] | str | None = None,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -327,6 +335,8 @@ def compare(
     range_error: float | None = None,
     cell: float | None = None,
     sensor_index: ArrayLike | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> dict[str, dict[str, Any]]: ...
 def _view(
     input: _Path,
@@ -338,7 +348,9 @@ def _view(
     set: dict[str, str | float] | None = None,
     truth: _Path | None = None,
     methods: Iterable[str] | str | None = None,
-    history: int = 10,
+    history: int | None = None,
+    reach: float | str | None = None,
+    preset: Literal["paper"] | None = None,
     min_angle: float | str | None = None,
     range_resolution: float | str | None = None,
     range_error: float | str | None = None,

@@ -62,7 +62,9 @@ def view(
     set: dict[str, str | float] | None = None,
     truth: _Path | None = None,
     methods: Iterable[_Method] | str | None = None,
-    history: int = 10,
+    history: int | None = None,
+    reach: float | str | None = None,
+    preset: Literal["paper"] | None = None,
     min_angle: float | str | None = None,
     range_resolution: float | str | None = None,
     range_error: float | str | None = None,
@@ -87,7 +89,7 @@ def view(
         A table of where each echo really came from, as ``atm simulate --truth`` writes it.
     methods
         What the panels can show, of "centerline", "atm", "consensus"; without, all.
-    history, min_angle, range_resolution, range_error
+    history, reach, preset, min_angle, range_resolution, range_error
         As in `fuse_file`.
     units
         Of lengths shown: "metric" or "inches"; without, those of the sensors.
@@ -128,14 +130,15 @@ def view(
         "set": set,
         "truth": truth,
         "methods": methods,
+        "history": history,
+        "reach": reach,
+        "preset": preset,
         "min_angle": min_angle,
         "range_resolution": range_resolution,
         "range_error": range_error,
         "units": units,
     }
     given = {name: value for name, value in options.items() if value is not None}
-    if history != 10:
-        given["history"] = history
     said = {name: os.fspath(value) if isinstance(value, os.PathLike) else value for name, value in given.items()}
     words = ", ".join([repr(os.fspath(input)), *(f"{name}={value!r}" for name, value in said.items())])
     replay = Replay(_atm._view(input, f"atm.view({words})", **given), height=height)
