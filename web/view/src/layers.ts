@@ -173,7 +173,7 @@ export function drawChosen(ink: Ink, view: View, drive: Drive, { method, echo }:
   ink.stroke();
 }
 
-/** An opening: its width, the stretch that the echoes leave free, and how wide that is. */
+/** An opening: its width, with words above it or below it, the stretch that the echoes leave free, and how wide that is. */
 export function drawGap(
   ink: Ink,
   view: View,
@@ -182,6 +182,7 @@ export function drawGap(
   { free, width, marked }: Gap,
   styles: Styles,
   units: "m" | "in",
+  below: boolean,
 ): void {
   if (!(width > 0)) return;
   const [ux, uy] = [(bx - ax) / width, (by - ay) / width];
@@ -217,7 +218,8 @@ export function drawGap(
   const [x, y] = at(width / 2, 0);
   if (!(x > 0 && y > 0 && x < view.width * view.ratio && y < view.height * view.ratio)) return;
   const words = found > 0 ? `free: ${length(found, units)} of ${length(width, units)}` : "no echoes on its jambs";
-  label(ink, view, words, at(width / 2, ux >= 0 ? depth : -depth), color, styles);
+  const edge = at(width / 2, ux >= 0 === below ? -depth : depth);
+  label(ink, view, words, [edge[0], edge[1] + (below ? 36 * view.ratio : 0)], color, styles);
 }
 
 /** Words above a place, on the paper's colour so that they are read over anything. */

@@ -62,7 +62,7 @@ export class Panel {
     if (state.shows("robot")) drawRobot(ink, view, drive, state.time, styles);
     for (const line of lines(drive, state)) {
       const found = gap(line, shown(method, pose, state), drive.said.depth, drive.said.jamb);
-      drawGap(ink, view, drive, line, found, styles, state.units);
+      drawGap(ink, view, drive, line, found, styles, state.units, line === state.line);
     }
     if (state.chosen) drawChosen(ink, view, drive, state.chosen, state.chosen.method === method, styles);
   }

@@ -47,8 +47,8 @@ pub(super) fn write(job: &ViewJob, contents: &Contents) -> Result<String> {
         "world": job.world.as_ref().map(|world| of_world(world, origin)),
         "columns": columns,
     });
-    said["depth"] = json!(crate::world::doorway::DOORWAY_DEPTH);
-    said["jamb"] = json!(crate::world::doorway::JAMB_REACH);
+    said["depth"] = json!(crate::world::DOORWAY_DEPTH);
+    said["jamb"] = json!(crate::world::JAMB_REACH);
     let name = job.log.input.rsplit(['/', '\\']).next().unwrap_or_default();
     let parts = [
         ("<!--title-->", escaped(name)),
