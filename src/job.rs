@@ -7,7 +7,8 @@ use std::{
     sync::Arc,
 };
 
-use self::{outputs::Outputs, watched::Watched};
+use self::outputs::Outputs;
+pub use self::watched::Watched;
 use crate::{
     error::{Error, Result},
     intake::{Defaults, SensorModel},

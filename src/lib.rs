@@ -14,6 +14,7 @@ pub mod pipeline;
 pub mod rig;
 pub mod stamp;
 pub mod storage;
+pub mod style;
 pub mod summary;
 pub mod survey;
 pub mod toml_document;
