@@ -22,8 +22,13 @@ fn job(input: &str) -> ViewJob {
         defaults: Defaults::default(),
         mcap: McapWishes::default(),
     };
-    let settings =
-        Settings { emit: Emit::Settled, history: History::PAPER, bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: false };
+    let settings = Settings {
+        emit: Emit::Settled,
+        history: History::PAPER,
+        bounds: Bounds::NONE,
+        estimator: AnyEstimator::PAPER,
+        strict: false,
+    };
     ViewJob {
         log,
         settings,
@@ -93,7 +98,11 @@ fn the_page_asks_nothing_of_the_network() {
     assert!(html.contains("default-src 'none'"));
     for (index, _) in html.match_indices("://") {
         // Names of XML, which nobody fetches.
-        assert!(html[..index].ends_with("http") && html[index..].starts_with("://www.w3.org/"), "{}", &html[index - 20..index + 40]);
+        assert!(
+            html[..index].ends_with("http") && html[index..].starts_with("://www.w3.org/"),
+            "{}",
+            &html[index - 20..index + 40]
+        );
     }
 }
 
