@@ -1,6 +1,6 @@
 //! Echoes and estimators, whichever they are.
 
-use atm_core::{Consensus, ConsensusEcho, Echo, Kind, Point2, Reflector, TransversalMedian};
+use atm_core::{Consensus, ConsensusEcho, Echo, Kind, MinAngle, Point2, Reflector, TransversalMedian};
 
 /// Kinds of the median's echoes, by their words.
 const MEDIAN: [&str; Kind::ALL.len()] = {
@@ -31,6 +31,14 @@ impl AnyEstimator {
         match self {
             Self::Median(_) => &MEDIAN,
             Self::Consensus(_) => &CONSENSUS,
+        }
+    }
+
+    /// The smallest angle of crossings that count.
+    pub const fn min_angle(&self) -> MinAngle<f64> {
+        match self {
+            Self::Median(median) => median.min_angle,
+            Self::Consensus(consensus) => consensus.min_angle(),
         }
     }
 

@@ -31,6 +31,16 @@ pub struct SensorModel {
     pub range_resolution: RangeResolution<f64>,
 }
 
+impl SensorModel {
+    /// The mount, turned by an angle in radians.
+    pub fn mount_at(&self, angle: f64) -> Isometry2<f64> {
+        if angle == 0.0 {
+            return self.mount;
+        }
+        self.mount * UnitComplex::from_cos_sin_unchecked(libm::cos(angle), libm::sin(angle))
+    }
+}
+
 /// What holds for sensors of which a rig says nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Defaults {
@@ -231,7 +241,7 @@ pub fn readings<'a>(row: &'a Row, pose: Pose, sensors: &'a [SensorModel]) -> imp
 }
 
 /// From the robot's frame to the fixed one.
-fn isometry(pose: Pose) -> Isometry2<f64> {
+pub(crate) fn isometry(pose: Pose) -> Isometry2<f64> {
     Isometry2::from_parts(
         Vector2::new(pose.x, pose.y).into(),
         UnitComplex::from_cos_sin_unchecked(libm::cos(pose.yaw), libm::sin(pose.yaw)),
@@ -246,7 +256,7 @@ fn readings_at<'a>(
     let modelled = move |sensor: u16| {
         let model = sensors.get(usize::from(sensor))?;
         Some(View {
-            pose: robot * model.mount,
+            pose: robot * model.mount_at(row.angle),
             limits: model.limits,
             beam: model.beam,
             range_resolution: model.range_resolution,

@@ -7,8 +7,11 @@ use std::{
     sync::Arc,
 };
 
+use atm_core::Kind;
+
 use self::{outputs::Outputs, watched::Watched};
 use crate::{
+    diagnose::guessed_resolution,
     error::{Error, Result},
     intake::{Defaults, SensorModel},
     log::{
@@ -16,12 +19,14 @@ use crate::{
         ahead::Ahead,
         csv::{CsvReadings, EmptyCell, PoseUse},
         format::Format,
+        joined::Joined,
         mcap::{
             ClockChoice, McapReadings, Options,
             write::{Contents, SchemaKind},
         },
         output::{Output, overwrites, same_file},
         poses::PoseLog,
+        sorted::Sorted,
     },
     pipeline::{self, AnyTrack, Settings},
     rig::Rig,
@@ -207,7 +212,11 @@ impl LogJob {
         // Somebody may sit behind the output of what is no file.
         let live = input.length.is_none();
         let log = CsvReadings::new(input, &format, poses, self.empty, Arc::clone(rig))?;
-        Ok(OpenLog::Csv(Box::new(Ahead::new(log, live)?), track))
+        let log = match live {
+            true => Ahead::new(Joined::new(log.joined_midway(), self.max_gap), true)?,
+            false => Ahead::new(Joined::new(Sorted::new(log), self.max_gap), false)?,
+        };
+        Ok(OpenLog::Csv(Box::new(log), track))
     }
 }
 
@@ -302,6 +311,12 @@ impl FuseJob {
         Ok(())
     }
 
+    /// The outputs of echoes and crossings, in words.
+    fn output_names(&self) -> String {
+        let names: Vec<&str> = [&self.output, &self.crossings].into_iter().flatten().map(String::as_str).collect();
+        names.join(" and ")
+    }
+
     /// What the output is.
     fn format(&self) -> Format {
         self.to.unwrap_or_else(|| self.output.as_deref().map_or(Format::Csv, Format::of_name))
@@ -334,15 +349,24 @@ impl FuseJob {
         let counts = self.summary.as_deref().map(Output::create).transpose()?;
         let (source, track) = log.source();
         let mut watched = Watched::new(source, length, progress);
-        let (summary, result) = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
+        let (mut summary, result) = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
         let result = result.and_then(|()| watched.finish());
+        if self.log.guesses_resolution() {
+            let (near, echoes) = (summary.echoes.get(Kind::Near.name()), summary.echoes.total());
+            summary.advice.extend(guessed_resolution(near, echoes));
+        }
         let (pose_source, mut notes) = match &log {
             OpenLog::Csv(..) => (None, Vec::new()),
             OpenLog::Mcap(log) => (poses_of(log), log.notes()),
         };
         notes.extend(outputs.late());
         let partials = outputs.partials();
-        let result = result.and_then(|()| outputs.commit());
+        let skipped = summary.skipped.held + summary.skipped.min_step;
+        let useless = summary.readings + skipped == 0 && summary.dropped.total() > 0 && result.is_ok();
+        let result = result.and_then(|()| if useless { outputs.discard() } else { outputs.commit() });
+        if useless && !partials.is_empty() {
+            notes.push(format!("no reading could be used: {} is not written", self.output_names()));
+        }
         let partials = if result.is_err() { partials } else { Vec::new() };
         // Whatever came of the run: what was counted is true.
         let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));

@@ -7,6 +7,7 @@ pub use atm_core as core;
 
 pub mod baseline;
 pub mod compare;
+pub mod diagnose;
 pub mod draw;
 pub mod echo;
 pub mod error;

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use atm_core::{ArcCrossing, Arrival, Bounds, Estimator, Fuser, Meaning, Reading, Rejected, Sink, Storage};
+use atm_core::{ArcCrossing, Arrival, Bounds, Estimator, Fuser, Held, Kind, Meaning, Reading, Rejected, Sink, Storage};
 
 pub use crate::intake::{AnyTrack, Defaults, SensorModel, min_angle_for, readings};
 use crate::{
+    diagnose::{Diagnosis, Evidence, MapSpan, Run, diagnose},
     echo::{AnyEcho, AnyEstimator},
     error::{Error, Problem, Reason, Result},
     intake::{Consumer, read},
@@ -86,10 +87,28 @@ pub fn fuse(
     sink: &mut dyn EchoSink,
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>) {
-    match settings.estimator {
-        AnyEstimator::Median(median) => fuse_by(median, source, track, sensors, settings, sink, progress),
-        AnyEstimator::Consensus(consensus) => fuse_by(consensus, source, track, sensors, settings, sink, progress),
-    }
+    let mut evidence = Evidence::new(Some(settings.estimator.min_angle()));
+    let observed = (&mut evidence, sink);
+    let (mut summary, result) = match settings.estimator {
+        AnyEstimator::Median(median) => fuse_by(median, source, track, sensors, settings, observed, progress),
+        AnyEstimator::Consensus(consensus) => fuse_by(consensus, source, track, sensors, settings, observed, progress),
+    };
+    summary.advice = advice(&evidence, &summary, settings, source.diagnoses());
+    (summary, result)
+}
+
+/// What is likely wrong with a log that was fused.
+fn advice(evidence: &Evidence, summary: &Summary, settings: &Settings, found: Vec<Diagnosis>) -> Vec<Diagnosis> {
+    let run = Run {
+        resolved: summary.resolved(),
+        arcs: summary.echoes.total() + summary.ignored_pairs + summary.ignored_none,
+        pairs: summary.ignored_pairs,
+        near: summary.echoes.get(Kind::Near.name()),
+        span: MapSpan::Readings(settings.history),
+        min_angle: settings.estimator.min_angle(),
+    };
+    let drops_held = settings.bounds.held() != Held::Keep;
+    diagnose(evidence, &summary.dropped, summary.clock_resets, drops_held, Some(&run), found)
 }
 
 fn fuse_by<E: Estimator<f64>>(
@@ -98,7 +117,7 @@ fn fuse_by<E: Estimator<f64>>(
     track: Option<&mut AnyTrack>,
     sensors: &[SensorModel],
     settings: &Settings,
-    sink: &mut dyn EchoSink,
+    (evidence, sink): (&mut Evidence, &mut dyn EchoSink),
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>)
 where
@@ -110,11 +129,13 @@ where
     let count = sensors.len().max(1);
     let result = match settings.emit {
         Emit::Latest => LatestSlots::new(count, history).map_err(too_large).and_then(|storage| {
-            let fusing = Fusing::new(Fuser::latest(estimator, bounds, storage), count, sink);
+            let observed = Observed { evidence, sensors };
+            let fusing = Fusing::new(Fuser::latest(estimator, bounds, storage), count, observed, sink);
             fusing.run(source, track, sensors, settings.strict, &mut summary, progress)
         }),
         Emit::Settled => SettledSlots::new(count, history).map_err(too_large).and_then(|storage| {
-            let fusing = Fusing::new(Fuser::settled(estimator, bounds, storage), count, sink);
+            let observed = Observed { evidence, sensors };
+            let fusing = Fusing::new(Fuser::settled(estimator, bounds, storage), count, observed, sink);
             fusing.run(source, track, sensors, settings.strict, &mut summary, progress)
         }),
     };
@@ -125,9 +146,16 @@ fn too_large(error: StorageError) -> Error {
     Error::Settings { message: error.to_string() }
 }
 
+/// What is seen of the log on the way.
+struct Observed<'a> {
+    evidence: &'a mut Evidence,
+    sensors: &'a [SensorModel],
+}
+
 /// The consumer that fuses.
 struct Fusing<'a, E, const B: usize> {
     fuser: Fuser<f64, Slots<f64, B>, E>,
+    observed: Observed<'a>,
     /// Sensors that the fuser has room for.
     room: usize,
     sink: &'a mut dyn EchoSink,
@@ -140,9 +168,14 @@ where
     Slots<f64, B>: Storage<f64>,
     E::Echo: Copy + Into<AnyEcho>,
 {
-    fn new(fuser: Fuser<f64, Slots<f64, B>, E>, room: usize, sink: &'a mut dyn EchoSink) -> Self {
+    fn new(
+        fuser: Fuser<f64, Slots<f64, B>, E>,
+        room: usize,
+        observed: Observed<'a>,
+        sink: &'a mut dyn EchoSink,
+    ) -> Self {
         let wants_crossings = sink.wants_crossings();
-        Self { fuser, room, sink, wants_crossings, crossings: Vec::new() }
+        Self { fuser, observed, room, sink, wants_crossings, crossings: Vec::new() }
     }
 
     /// Reads to the end, and reports what is in the local map then. A run that fails reports no more: what it has
@@ -203,6 +236,7 @@ where
     }
 
     fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        self.observed.evidence.record(row, Some(pose), self.observed.sensors);
         self.sink.record(row, pose)
     }
 
@@ -225,6 +259,7 @@ where
     }
 
     fn clock_reset(&mut self, summary: &mut Summary) -> Result<()> {
+        self.observed.evidence.clock_reset();
         self.finish(summary)
     }
 

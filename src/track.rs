@@ -223,7 +223,7 @@ pub fn time_backwards(t: i64, latest: Option<i64>, place: Place) -> Problem {
 
 impl Pose {
     /// The pose this share of the way to another, `share` in [0, 1]; `None` where the poses are too far apart for an `f64`.
-    fn towards(self, other: Self, share: f64) -> Option<Self> {
+    pub(crate) fn towards(self, other: Self, share: f64) -> Option<Self> {
         // The remainder is exact, and within ±half a turn: the shorter way.
         let turn = libm::remainder(other.yaw - self.yaw, TAU);
         let pose = Self {

@@ -39,12 +39,27 @@ impl Written {
         }
     }
 
+    /// The file, with all that goes into it; `None` where its writer has ended already.
+    fn into_output(self) -> Result<Option<Output>> {
+        match self {
+            Self::Echoes(table) => table.into_output(),
+            Self::Crossings(table) => table.into_output(),
+            Self::Recording(recording) => recording.finish().map(Some),
+        }
+    }
+
     /// Puts the file under its name.
     fn commit(self) -> Result<()> {
-        match self {
-            Self::Echoes(table) => table.commit(),
-            Self::Crossings(table) => table.commit(),
-            Self::Recording(recording) => recording.finish()?.commit(),
+        self.into_output()?.map_or(Ok(()), Output::commit)
+    }
+
+    /// Takes it back.
+    fn discard(self) -> Result<()> {
+        match self.into_output()? {
+            // A pipe has it already.
+            Some(output) if output.partial_path().is_none() => output.commit(),
+            Some(output) => output.discard(),
+            None => Ok(()),
         }
     }
 }
@@ -65,11 +80,9 @@ impl<R: Line + Send + 'static> Table<R> {
         work(&mut self.rows).map_err(|source| Error::Io { file: Arc::clone(&self.name), source })
     }
 
-    fn commit(self) -> Result<()> {
-        match self.rows.into_table().map_err(|source| Error::Io { file: self.name, source })? {
-            Some(table) => table.into_inner().commit(),
-            None => Ok(()),
-        }
+    fn into_output(self) -> Result<Option<Output>> {
+        let table = self.rows.into_table().map_err(|source| Error::Io { file: self.name, source })?;
+        Ok(table.map(TableWriter::into_inner))
     }
 }
 
@@ -168,6 +181,11 @@ impl Outputs {
     /// Puts the files under their names.
     pub(super) fn commit(self) -> Result<()> {
         self.crossings.into_iter().chain(self.echoes).try_for_each(Written::commit)
+    }
+
+    /// Leaves no files: nothing could be used. What goes elsewhere, to a pipe, ends well.
+    pub(super) fn discard(self) -> Result<()> {
+        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::discard)
     }
 
     /// Takes over what the log calls its frames, and leaves out the transforms that it has itself where it is copied.

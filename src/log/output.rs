@@ -116,6 +116,19 @@ impl Output {
         self.finish().map_err(|source| Error::Io { file: self.name.clone(), source })
     }
 
+    /// Takes back what was written to a file of its own: nothing appears under the name, and what is there already stays.
+    pub fn discard(self) -> Result<()> {
+        let Self { sink, name, pending } = self;
+        // What is still gathered is not written any more.
+        drop(sink.into_parts());
+        match pending {
+            Some(Pending { partial, .. }) => {
+                fs::remove_file(partial).map_err(|source| Error::Io { file: name, source })
+            }
+            None => Ok(()),
+        }
+    }
+
     fn finish(&mut self) -> io::Result<()> {
         self.sink.flush()?;
         let (Some(pending), Sink::File(file)) = (&self.pending, self.sink.get_ref()) else {

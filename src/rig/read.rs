@@ -22,6 +22,8 @@ const RING: [&str; 3] = ["count", "radius", "first_yaw"];
 const SENSOR: [&str; 5] = ["id", "x", "y", "yaw", "topic"];
 const TABLE: [&str; 8] =
     ["header", "delimiter", "columns", "time_unit", "range_unit", "pose_unit", "yaw_unit", "no_echo"];
+/// Of the table of readings alone.
+const PANNING: [&str; 2] = ["angle", "angle_unit"];
 /// Most values that stand for "no echo": each range is compared with all of them.
 const MAX_NO_ECHO: usize = 1000;
 /// Poses in a file of their own; only under `[log]`.
@@ -124,9 +126,9 @@ fn sensor<'a>(section: &Section<'a>, defaults: Ranging) -> Result<(Entry<'a>, Se
 
 /// Reads `[log]` and `[log.poses]`.
 fn log_formats(section: &Section<'_>) -> Result<LogFormats> {
-    section.only(&[&TABLE, &[POSES]])?;
+    section.only(&[&TABLE, &PANNING, &[POSES]])?;
     let readings = table_format(section, TableFormat::default(), section.get("header"))?;
-    let inherited = TableFormat { columns: None, ..readings.clone() };
+    let inherited = TableFormat { columns: None, angle: None, ..readings.clone() };
     let poses = match section.get(POSES) {
         Some(poses) => {
             let poses = poses.section()?;
@@ -163,6 +165,15 @@ fn table_format(section: &Section<'_>, inherited: TableFormat, header: Option<En
     }
     if let Some(unit) = section.get("yaw_unit") {
         format.yaw = unit.quantity(Scale::angle)?;
+    }
+    if let Some(name) = section.get("angle") {
+        format.angle = Some(name.text()?.to_owned());
+    }
+    if let Some(unit) = section.get("angle_unit") {
+        if format.angle.is_none() {
+            return Err(unit.error("needs `angle`, the column that it is the unit of"));
+        }
+        format.angle_unit = unit.quantity(Scale::angle)?;
     }
     if let Some(values) = section.get("no_echo") {
         format.no_echo = values.items_up_to(MAX_NO_ECHO)?.iter().map(Entry::number).collect::<Result<_>>()?;

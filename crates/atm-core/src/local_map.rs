@@ -73,6 +73,11 @@ impl<T: Scalar> Bounds<T> {
     pub const fn with_held(self, held: Held) -> Self {
         Self { held, ..self }
     }
+
+    /// What becomes of a reading equal to its sensor's previous one.
+    pub const fn held(&self) -> Held {
+        self.held
+    }
 }
 
 /// What decides who leaves when a reading arrives.

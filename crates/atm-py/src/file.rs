@@ -17,7 +17,7 @@ use pyo3::{exceptions::PyValueError, prelude::*, types::PyString};
 
 use crate::{
     argument::{self, named},
-    fuse::{warn, warn_of_near},
+    fuse::{warn, warn_of},
     job,
     options::{self, Choice},
     raise,
@@ -127,8 +127,8 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// Warns
 /// -----
 /// UserWarning
-///     Records that could not be used, each cause with its count and first place; and a guessed range resolution that makes more than
-///     20 % of the echoes near.
+///     Records that could not be used, each cause with its count and first place; and what is likely wrong with the log: the dict's
+///     `advice`.
 ///
 /// Examples
 /// --------
@@ -269,7 +269,7 @@ pub fn fuse_file<'py>(
     job.check(&settings).map_err(|error| raise::library(&error))?;
     let progress = progress.map(|progress| progress.clone().unbind());
     let summary = job::run(py, &job, &settings, progress.as_ref())?;
-    told(py, job.log.guesses_resolution(), &summary)
+    told(py, &summary)
 }
 
 /// How the smallest crossing angle is chosen.
@@ -304,13 +304,11 @@ fn unusable(dropped: &Dropped) -> Option<String> {
 }
 
 /// The counts as a dict; what deserves a word is warned of.
-fn told<'py>(py: Python<'py>, guessed: bool, summary: &Summary) -> PyResult<Bound<'py, PyAny>> {
+fn told<'py>(py: Python<'py>, summary: &Summary) -> PyResult<Bound<'py, PyAny>> {
     if let Some(unusable) = unusable(&summary.dropped) {
         warn(py, &unusable)?;
     }
-    if guessed {
-        warn_of_near(py, summary)?;
-    }
+    warn_of(py, &summary.advice)?;
     let text = serde_json::to_string(summary).map_err(|error| PyValueError::new_err(error.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
 }

@@ -6,9 +6,10 @@ use atm::{
     core::{Beam, RangeResolution},
     error::Result,
     intake::Defaults,
-    job::{LogJob, McapWishes},
+    job::{LogJob, MAX_GAP, McapWishes},
     log::{Input, csv::EmptyCell, format, mcap::ClockChoice},
     rig::Rig,
+    stamp,
 };
 use clap::{Args, ValueEnum};
 
@@ -72,6 +73,23 @@ pub enum Clock {
 }
 
 impl LogArgs {
+    /// The flags for recordings that were given, as they are written.
+    pub fn others(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        if self.max_gap != MAX_GAP {
+            words.push(format!("--max-gap {}s", stamp::text(i64::try_from(self.max_gap).unwrap_or(i64::MAX))));
+        }
+        if !self.range_topics.is_empty() {
+            words.push(format!("--range-topics {}", self.range_topics.join(",")));
+        }
+        words.extend(self.pose_topic.iter().map(|topic| format!("--pose-topic {topic}")));
+        words.extend(self.fixed_frame.iter().map(|frame| format!("--fixed-frame {frame}")));
+        words.extend(
+            self.clock.and_then(|clock| clock.to_possible_value()).map(|clock| format!("--clock {}", clock.get_name())),
+        );
+        words
+    }
+
     /// How the log is to be read. `range_resolution` is what beats the rig's.
     pub fn job(
         &self,

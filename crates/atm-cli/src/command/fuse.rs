@@ -2,7 +2,8 @@
 mod fleet;
 
 use atm::{
-    core::{DomainError, Kind, MinAngle},
+    core::{DomainError, MinAngle},
+    diagnose::Diagnosis,
     echo::AnyEstimator,
     job::{Ended, FuseJob, LogJob},
     pipeline::{self, Emit, SensorModel, Settings},
@@ -14,9 +15,6 @@ use crate::{
     args::{self, Fuse, NoneOption, TwoOption},
     command, interrupt, is_reader_gone, report,
 };
-
-/// Share of echoes of kind `near` above which a guessed range resolution deserves a word.
-const MANY_NEAR: f64 = 0.2;
 
 /// Runs the command.
 pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
@@ -71,7 +69,7 @@ pub(super) fn said(
     };
     let mut words = Vec::new();
     if !matches!(&result, Err(error) if is_reader_gone(error)) {
-        words = counted(args, pose_source.as_deref(), &summary, job.log.guesses_resolution());
+        words = counted(args, pose_source.as_deref(), &summary);
         words.extend(notes);
     }
     let outcome = if summary.is_clean() { Outcome::Done } else { Outcome::Partly };
@@ -124,19 +122,15 @@ pub(super) fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings,
 }
 
 /// What was counted, and what deserves a word.
-fn counted(args: &Fuse, pose_source: Option<&str>, summary: &Summary, guessed: bool) -> Vec<String> {
+fn counted(args: &Fuse, pose_source: Option<&str>, summary: &Summary) -> Vec<String> {
     let mut words = Vec::new();
     if !args.quiet {
         words.extend(pose_source.map(|source| format!("poses     {source}")));
         words.push(report::counts(summary));
     }
     words.extend(report::unusable(&summary.dropped));
-    let (near, total) = (summary.echoes.get(Kind::Near.name()), summary.echoes.total());
-    if guessed && near as f64 > MANY_NEAR * total as f64 {
-        words.push(format!(
-            "warning: {near} of {total} echoes are near; a range resolution of 1in was assumed, say --range-resolution if \
-             the ranges are finer"
-        ));
-    }
+    // Records that can't be used are told of above, each with its place.
+    let told = |found: &&Diagnosis| !matches!(found, Diagnosis::Unusable { .. });
+    words.extend(summary.advice.iter().filter(told).map(|found| format!("warning: {found}")));
     words
 }

@@ -27,6 +27,7 @@ __version__: str
 
 _Emit = Literal["settled", "latest"]
 _Kind = Literal["median", "single", "center", "near", "pair", "point", "wall"]
+_TimeUnit = Literal["s", "ms", "us", "ns"]
 _Held = Literal["keep", "drop", "edges"]
 _Estimator = Literal["atm", "consensus"]
 _OnNone = Literal["center", "drop"]
@@ -185,6 +186,7 @@ class Fuser:
         yaw: ArrayLike,
         *,
         sensor_index: ArrayLike | None = None,
+        t_unit: _TimeUnit | None = None,
     ) -> list[Echo]: ...
     def finish(self) -> list[Echo]: ...
     def snapshot(self) -> list[Echo]: ...
@@ -215,6 +217,7 @@ def fuse(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | None = None,
+    t_unit: _TimeUnit | None = None,
 ) -> NDArray[np.void]: ...
 def crossings(
     t: ArrayLike,
@@ -237,6 +240,7 @@ def crossings(
     min_step: float | None = None,
     drop_held: bool = False,
     sensor_index: ArrayLike | None = None,
+    t_unit: _TimeUnit | None = None,
 ) -> NDArray[np.void]: ...
 def fuse_file(
     input: _Path,
