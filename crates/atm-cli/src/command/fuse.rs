@@ -35,7 +35,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let (words, outcome) = said(args, &job, ended);
+    let (words, outcome) = said(args, ended);
     for word in &words {
         report::say(format_args!("{word}"));
     }
@@ -58,11 +58,7 @@ pub(super) fn job(args: &Fuse, input: &str, output: String) -> Result<FuseJob, F
 }
 
 /// What a person is told of a run that has ended, and how it ended.
-pub(super) fn said(
-    args: &Fuse,
-    job: &FuseJob,
-    ended: atm::error::Result<Ended>,
-) -> (Vec<String>, Result<Outcome, Failure>) {
+pub(super) fn said(args: &Fuse, ended: atm::error::Result<Ended>) -> (Vec<String>, Result<Outcome, Failure>) {
     let Ended { summary, pose_source, notes, result, partials } = match ended {
         Ok(ended) => ended,
         Err(error) => return (Vec::new(), Err(error.into())),
