@@ -7,6 +7,8 @@ use std::{
     sync::Arc,
 };
 
+use atm_core::Isometry2;
+
 use self::{outputs::Outputs, watched::Watched};
 use crate::{
     error::{Error, Result},
@@ -26,11 +28,9 @@ use crate::{
     pipeline::{self, AnyTrack, Settings},
     rig::Rig,
     summary::Summary,
-    track::Track,
+    track::{GapLimit, MotionLimit, PoseLimits, Track},
+    units::Scale,
 };
-
-/// 0.5 s, in nanoseconds.
-pub const MAX_GAP: u64 = 500_000_000;
 
 /// What is said of how to read recordings; `None` and empty where nothing is.
 #[derive(Debug, Clone, Default)]
@@ -39,6 +39,8 @@ pub struct McapWishes {
     pub range_topics: Vec<String>,
     /// The topic of the poses.
     pub pose_topic: Option<String>,
+    /// The topics of transforms, with those of static ones around them; all there are where it is empty.
+    pub tf_topics: Vec<String>,
     /// The frame of the poses.
     pub fixed_frame: Option<String>,
     /// Which time of a message counts.
@@ -47,6 +49,8 @@ pub struct McapWishes {
     pub reorder: Option<u64>,
     /// Longest message that is read, in bytes.
     pub max_message: Option<u64>,
+    /// From raw ranges and limits to metres, instead of what the rig says.
+    pub range_unit: Option<Scale>,
 }
 
 impl McapWishes {
@@ -55,10 +59,12 @@ impl McapWishes {
         let made = [
             (!self.range_topics.is_empty(), "--range-topics"),
             (self.pose_topic.is_some(), "--pose-topic"),
+            (!self.tf_topics.is_empty(), "--tf-topics"),
             (self.fixed_frame.is_some(), "--fixed-frame"),
             (self.clock.is_some(), "--clock"),
             (self.reorder.is_some(), "--reorder"),
             (self.max_message.is_some(), "--max-message"),
+            (self.range_unit.is_some(), "--range-unit"),
         ];
         made.into_iter().find(|(made, _)| *made).map(|(_, name)| name)
     }
@@ -77,8 +83,11 @@ pub struct LogJob {
     pub rig: Option<Arc<Rig>>,
     /// A trajectory in a second file.
     pub poses: Option<String>,
-    /// A reading without a pose within this on both sides, in nanoseconds, has none.
-    pub max_gap: u64,
+    /// A reading without a pose within this on both sides, in nanoseconds, has none; `None`: 0.5 s, and more where poses come
+    /// less often.
+    pub max_gap: Option<u64>,
+    /// Fastest motion that is believed of the robot.
+    pub max_speed: MotionLimit,
     /// What an empty cell of a table is.
     pub empty: Option<EmptyCell>,
     /// What holds where neither rig nor log says more.
@@ -138,6 +147,11 @@ impl LogJob {
         }
     }
 
+    /// What poses have to keep to.
+    fn limits(&self) -> PoseLimits {
+        PoseLimits { gap: GapLimit::of(self.max_gap), motion: self.max_speed }
+    }
+
     /// How a recording is read.
     pub fn options(&self, poses: PoseUse) -> Options {
         let (wishes, default) = (self.mcap.clone(), Options::default());
@@ -148,7 +162,9 @@ impl LogJob {
             clock: wishes.clock.unwrap_or(default.clock),
             reorder: wishes.reorder.unwrap_or(default.reorder),
             max_message: wishes.max_message.unwrap_or(default.max_message),
-            max_gap: self.max_gap,
+            tf_topics: wishes.tf_topics,
+            limits: self.limits(),
+            range_unit: wishes.range_unit,
             poses,
             everything: false,
             defaults: self.defaults,
@@ -164,7 +180,7 @@ impl LogJob {
         let format = self.rig.as_deref().and_then(Rig::log).map(|formats| &formats.poses);
         let log = PoseLog::new((self.opens)(path)?, format)?;
         let kind = if log.is_tum() { "TUM" } else { "CSV" };
-        Ok(Some((Track::new(Box::new(log), self.max_gap), kind)))
+        Ok(Some((Track::new(Box::new(log), self.limits()), kind)))
     }
 
     /// Whether the range resolution of some sensor is a guess.
@@ -186,6 +202,27 @@ impl LogJob {
         }
     }
 
+    /// Where the sensors sit, up to the first one of which the rig leaves that to the log.
+    fn mounts(&self, sensors: &[SensorModel]) -> Vec<Isometry2<f64>> {
+        let rig = self.rig.iter().flat_map(|rig| rig.sensors());
+        rig.zip(sensors).take_while(|(sensor, _)| sensor.has_mount()).map(|(_, model)| model.mount).collect()
+    }
+
+    /// Refuses a rig whose `[log]` section says what has no effect on a recording.
+    fn check_rig(&self) -> Result<()> {
+        const TABLES_ONLY: [&str; 6] = ["header", "delimiter", "columns", "time_unit", "pose_unit", "yaw_unit"];
+        let Some(rig) = self.rig.as_deref().filter(|_| self.poses.is_none()) else { return Ok(()) };
+        let idle = rig.log_keys().iter().find(|key| TABLES_ONLY.contains(&key.as_str()) || *key == "poses");
+        idle.map_or(Ok(()), |key| {
+            let message = format!(
+                "{}: the rig's `[log]` has `{key}`, which says how a table is written and has no effect on a recording; leave it \
+                 out (range_unit and no_echo apply)",
+                rig.name()
+            );
+            Err(Error::Settings { message })
+        })
+    }
+
     /// The log that was opened, with the sensors and poses it needs. `everything`: what a recording holds besides is wanted, too.
     ///
     /// # Errors
@@ -193,6 +230,7 @@ impl LogJob {
     pub fn readings(&self, format: Format, input: Input, everything: bool) -> Result<OpenLog> {
         let track = self.track()?.map(|(track, _)| track);
         if format != Format::Csv {
+            self.check_rig()?;
             let options = Options { everything, ..self.options(PoseUse::Needed) };
             let log = McapReadings::open(&self.input, input, self.rig.clone(), track, options)?;
             return Ok(OpenLog::Mcap(Box::new(log)));
@@ -324,7 +362,7 @@ impl FuseJob {
         let sensors = self.log.sensors()?;
         let input = outputs::Input {
             ids: self.log.rig.as_deref().map(Rig::ids).unwrap_or_default(),
-            mounts: sensors.iter().map(|sensor| sensor.mount).collect(),
+            mounts: self.log.mounts(&sensors),
             window: log.window(),
         };
         let mut outputs = Outputs::create(self, settings, &input)?;

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use super::raw::Message;
-use crate::error::Reason;
+use crate::{error::Reason, sample::Sample, track::seconds};
 
 /// The times of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -20,18 +20,23 @@ pub enum ClockChoice {
 /// Stamps farther from the time of recording than this are of another clock: 1 h, in nanoseconds.
 const FAR: i128 = 3_600_000_000_000;
 
+/// The share of the largest gap of poses from which on another clock deserves a word: a quarter.
+const NOTEWORTHY: u64 = 4;
+
 /// The times that were met.
 pub(super) struct Clocks {
     choice: ClockChoice,
     /// By topic, how far the first stamp was from the time of its recording, in nanoseconds.
     offsets: BTreeMap<Arc<str>, i128>,
+    /// By topic of readings, by how much its stamps are later than those of its poses, against the times of recording, in nanoseconds.
+    lags: BTreeMap<Arc<str>, Sample<i64>>,
     /// The recording has a topic with a simulated time.
     pub(super) is_simulated: bool,
 }
 
 impl Clocks {
     pub(super) fn new(choice: ClockChoice) -> Self {
-        Self { choice, offsets: BTreeMap::new(), is_simulated: false }
+        Self { choice, offsets: BTreeMap::new(), lags: BTreeMap::new(), is_simulated: false }
     }
 
     /// The time of a message in nanoseconds; else why it has none.
@@ -56,6 +61,34 @@ impl Clocks {
             (ClockChoice::Log, _) => of_file(message.log_time),
             (ClockChoice::Publish, _) => of_file(message.publish_time),
         }
+    }
+
+    /// By how much a reading's stamp is later than those of its poses, against the times of recording, in nanoseconds.
+    pub(super) fn compare(&mut self, topic: &Arc<str>, lag: i64) {
+        match self.lags.get_mut(topic) {
+            Some(lags) => lags.add(lag),
+            None => self.lags.entry(topic.clone()).or_default().add(lag),
+        }
+    }
+
+    /// Which topics' clocks are apart from those of their poses, so far that it matters where poses may be `max_gap` nanoseconds
+    /// from a reading.
+    pub(super) fn lags(&self, max_gap: u64) -> Option<String> {
+        let lags = self.lags.iter().filter_map(|(topic, lags)| Some((topic, lags.median()?)));
+        let mut far: Vec<(&Arc<str>, i64)> =
+            lags.filter(|(_, lag)| lag.unsigned_abs() > max_gap / NOTEWORTHY).collect();
+        far.sort_by_key(|(topic, lag)| (std::cmp::Reverse(lag.unsigned_abs()), Arc::clone(topic)));
+        let (first, lag) = far.first()?;
+        let more = match far.len() {
+            1 => String::new(),
+            count => format!(" (and of {} more topics)", count - 1),
+        };
+        Some(format!(
+            "warning: the stamps of {first}{more} are {} {} those of its poses, measured against the times of recording: if its \
+             clock is wrong, --clock log is right; if its messages only come late, the stamps are",
+            seconds(lag.unsigned_abs()),
+            if *lag > 0 { "ahead of" } else { "behind" },
+        ))
     }
 
     /// What is to be said of the clocks: that time is simulated, or that it is for some.

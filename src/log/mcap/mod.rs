@@ -17,6 +17,8 @@ mod echoes;
 mod fields;
 mod history;
 mod holds;
+mod home;
+mod namespace;
 mod op;
 mod options;
 mod order;

@@ -1,7 +1,7 @@
 //! How a recording is read.
 
 use super::clocks::ClockChoice;
-use crate::{log::csv::PoseUse, pipeline::Defaults};
+use crate::{log::csv::PoseUse, pipeline::Defaults, track::PoseLimits, units::Scale};
 
 /// How a recording is read.
 #[derive(Debug, Clone)]
@@ -18,8 +18,12 @@ pub struct Options {
     pub reorder: u64,
     /// Longest message that is read, in bytes.
     pub max_message: u64,
-    /// A reading without a pose within this on both sides, in nanoseconds, has none.
-    pub max_gap: u64,
+    /// The topics of transforms, with those of static ones around them; all there are where it is empty.
+    pub tf_topics: Vec<String>,
+    /// How near poses have to be, and how fast they may move.
+    pub limits: PoseLimits,
+    /// From raw ranges and limits to metres, instead of what the rig says.
+    pub range_unit: Option<Scale>,
     /// What is made of the recording's own poses.
     pub poses: PoseUse,
     /// Whether a [`super::Tap`] is to be told all that the recording holds.
@@ -44,7 +48,9 @@ impl Default for Options {
             clock: ClockChoice::Header,
             reorder: Self::REORDER,
             max_message: Self::MAX_MESSAGE,
-            max_gap: 500_000_000,
+            tf_topics: Vec::new(),
+            limits: PoseLimits::default(),
+            range_unit: None,
             poses: PoseUse::Needed,
             everything: false,
             defaults: Defaults::default(),

@@ -12,17 +12,17 @@ use super::{
     plane::{on_plane, view},
     raw::{Channel, Message},
     sensors::{Sensors, Sight},
-    topics::kind_of,
+    topics::{is_clock, kind_of},
     tree::{Frame, Hold},
     whereabouts::{Lost, Seat, Whereabouts, Wish},
 };
 use crate::{
-    error::{Place, Problem, Reason, Result},
+    error::{Error, Place, Problem, Reason, Result},
     log::{Frames, Next, Row, View, csv::PoseUse},
     pipeline::{AnyTrack, Defaults},
     rig::Rig,
     stamp,
-    track::{Pose, time_backwards},
+    track::{Pose, seconds, time_backwards},
 };
 
 /// How long transforms are kept for readings that come behind them, in nanoseconds: 10 s, as tf2 does.
@@ -79,13 +79,18 @@ pub(super) struct Reader {
 impl Reader {
     /// Nothing was read yet.
     pub(super) fn new(name: Arc<str>, rig: Option<Arc<Rig>>, track: Option<AnyTrack>, options: Options) -> Self {
-        let wish = Wish { topic: options.pose_topic.clone(), fixed: options.fixed_frame.clone() };
+        let wish = Wish {
+            topic: options.pose_topic.clone(),
+            transforms: options.tf_topics.clone(),
+            ranges: options.range_topics.clone(),
+            fixed: options.fixed_frame.clone(),
+        };
         let memory = i64::try_from(MEMORY.saturating_add(options.reorder.saturating_mul(2))).unwrap_or(i64::MAX);
         Self {
             name,
             lines: BTreeMap::new(),
-            sensors: Sensors::new(rig, options.defaults),
-            whereabouts: Whereabouts::new(track, wish, options.max_gap, memory),
+            sensors: Sensors::new(rig, options.defaults, options.range_unit),
+            whereabouts: Whereabouts::new(track, wish, options.limits, memory),
             clocks: Clocks::new(options.clock),
             order: Order::new(options.reorder),
             late: Vec::new(),
@@ -127,9 +132,14 @@ impl Reader {
         !self.saw_ranges || self.whereabouts.is_blank()
     }
 
-    /// The recording has a time that is simulated.
-    pub(super) fn has_clock(&mut self) {
-        self.clocks.is_simulated = true;
+    /// There is a channel of this kind.
+    pub(super) fn expect(&mut self, channel: &Channel) {
+        if is_clock(channel) {
+            self.clocks.is_simulated = true;
+        }
+        if Kind::of(channel).is_some_and(|kind| kind != Kind::Range) {
+            self.whereabouts.expect(&channel.topic);
+        }
     }
 
     /// There will be no more messages.
@@ -184,7 +194,7 @@ impl Reader {
         let is_static = matches!(line.kind, Kind::Transform | Kind::Transforms) && line.topic.ends_with("tf_static");
         let log_time = time(message.log_time);
         if is_static {
-            let added = self.whereabouts.add_transform(said, (0, log_time), Hold::Forever);
+            let added = self.whereabouts.add_transform(&line.topic, said, (0, log_time), Hold::Forever);
             return added.map_err(|words| (Reason::BadTransform, words));
         }
         let t = self
@@ -207,8 +217,8 @@ impl Reader {
     /// Takes a transform or a pose in.
     fn where_is(&mut self, topic: &str, kind: Kind, said: &Said, times: (i64, i64)) -> Result<(), (Reason, String)> {
         let added = match kind {
-            Kind::Transforms => self.whereabouts.add_transform(said, times, Hold::Moment),
-            Kind::Transform => self.whereabouts.add_transform(said, times, Hold::UntilNext),
+            Kind::Transforms => self.whereabouts.add_transform(topic, said, times, Hold::Moment),
+            Kind::Transform => self.whereabouts.add_transform(topic, said, times, Hold::UntilNext),
             Kind::Odometry | Kind::Pose => self.whereabouts.add_pose(topic, kind, said, times),
             Kind::Range => Ok(()),
         };
@@ -217,7 +227,8 @@ impl Reader {
 
     /// Holds a reading back until its turn.
     fn reading(&mut self, line: &Line, said: &Said, t: i64, log_time: u64, byte: u64) -> Result<(), (Reason, String)> {
-        let measured = said.measured();
+        self.whereabouts.comes_from(&line.topic).map_err(|lost| (lost.reason, lost.words))?;
+        let measured = self.sensors.in_metres(said.measured());
         let sensor = self.sensors.find(&line.topic, &said.frame)?;
         let sight = self.sensors.sight(sensor, measured)?;
         let frame = match said.frame.is_empty() {
@@ -282,6 +293,10 @@ impl Reader {
     fn placed(&mut self, reading: &Reading, problems: &mut dyn FnMut(Problem)) -> Result<Option<Taken>> {
         let seat = Seat { frame: reading.frame, mount: self.sensors.mount(reading.sensor), t: reading.t };
         let placed = self.whereabouts.place(seat, problems)?;
+        self.compare_clocks(reading, seat);
+        if let Err(Lost { words, is_final: true, .. }) = placed {
+            return Err(Error::Format { place: self.place(reading.byte), message: format!("{}: {words}", reading.topic) });
+        }
         if self.frames.is_none() && placed.is_ok() {
             self.frames = Some(Arc::new(self.whereabouts.frames(seat)));
         }
@@ -291,12 +306,20 @@ impl Reader {
         });
         Ok(match projected {
             Ok(taken) => Some(taken),
-            Err(Lost { reason, words }) => {
+            Err(Lost { reason, words, .. }) => {
                 let value = format!("{} at {}: {words}", reading.topic, stamp::text(reading.t));
                 problems(Problem { reason, place: self.place(reading.byte), value });
                 None
             }
         })
+    }
+
+    /// Takes in how far the clocks of a reading and of its poses are apart.
+    fn compare_clocks(&mut self, reading: &Reading, seat: Seat) {
+        let own = reading.t.saturating_sub(time(reading.log_time));
+        if let Some(poses) = self.whereabouts.offset(seat, own) {
+            self.clocks.compare(&reading.topic, own.saturating_sub(poses));
+        }
     }
 
     /// What a person should know of how the recording was read.
@@ -305,6 +328,8 @@ impl Reader {
         if let Some(words) = self.clocks.words() {
             notes.push(format!("clock     {words}"));
         }
+        notes.extend(self.clocks.lags(self.options.limits.gap.max()));
+        notes.extend(self.pose_notes());
         let blind = self.sensors.without_beam();
         if !blind.is_empty() {
             let beam = self.options.defaults.field_of_view.map_or(Defaults::FIELD_OF_VIEW, |beam| beam.field_of_view());
@@ -312,6 +337,34 @@ impl Reader {
             notes.push(format!(
                 "beam      {:.1}deg is assumed of {ids}, whose messages do not say it",
                 beam.to_degrees()
+            ));
+        }
+        notes
+    }
+}
+
+impl Reader {
+    /// What a person should know of the poses.
+    fn pose_notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if let Some((within, step)) = self.whereabouts.bridged() {
+            notes.push(format!(
+                "gaps      poses up to {} apart are used, between which the robot moved {:.2} m and {:.0}deg at most; --max-gap \
+                 bounds that",
+                seconds(within),
+                step.distance,
+                step.turn.to_degrees(),
+            ));
+        }
+        for (what, doubts) in self.whereabouts.doubted() {
+            let times = |count: u64| format!("{count} times");
+            let said = match doubts.returning {
+                0 => format!("{} had another value at the same time", times(doubts.contradicted)),
+                returning => format!("{} jumped to and fro, by up to {:.2} m", times(returning), doubts.widest),
+            };
+            notes.push(format!(
+                "warning: the {what} {said}: two sources publish them; leave one out with --tf-topics or --pose-topic, or record \
+                 it alone"
             ));
         }
         notes

@@ -9,7 +9,7 @@ use super::{
     reader::Reader,
     records::{Limits, Records},
     registry::Registry,
-    topics::{self, is_clock, kind_of},
+    topics::{self, kind_of},
     unpacking::Ahead,
     window::Recording,
 };
@@ -53,7 +53,8 @@ impl McapReadings {
         let registry = Registry::new(Box::new(move |channel| everything || kind_of(channel, &topics).is_some()));
         let limits = Limits { max_message: options.max_message, everything, metadata: false };
         let records = Records::open(recording, name.clone(), registry, limits, Ahead::of(path))?;
-        let reader = Reader::new(name, rig, track, options);
+        let mut reader = Reader::new(name, rig, track, options);
+        records.registry().channels().for_each(|channel| reader.expect(channel));
         let readings = Self { records, reader, tap: None, ended: false };
         if readings.records.is_complete() {
             readings.check_topics()?;
@@ -121,9 +122,7 @@ impl McapReadings {
                 self.reader.message(channel, message, byte, problems);
             }
             (Item::Channel(channel), tap) => {
-                if is_clock(channel) {
-                    self.reader.has_clock();
-                }
+                self.reader.expect(channel);
                 if let Some(tap) = tap {
                     tap.channel(channel)?;
                 }

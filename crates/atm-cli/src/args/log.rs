@@ -9,10 +9,12 @@ use atm::{
     job::{LogJob, McapWishes},
     log::{Input, csv::EmptyCell, format, mcap::ClockChoice},
     rig::Rig,
+    track::MotionLimit,
+    units::Scale,
 };
 use clap::{Args, ValueEnum};
 
-use super::values::{beam, bytes, duration};
+use super::values::{beam, bytes, duration, length_unit, max_speed};
 
 /// A format of files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -32,9 +34,13 @@ pub struct LogArgs {
     /// Poses from a second file: CSV t,x,y,yaw or TUM [default: the log's own]
     #[arg(long, value_name = "FILE")]
     pub poses: Option<String>,
-    /// Drop a reading that has no pose within this on both sides
-    #[arg(long, value_name = "T", default_value = "0.5s", value_parser = duration)]
-    pub max_gap: u64,
+    /// Drop a reading that has no pose within this on both sides [default: 0.5s, more where poses come less often and the robot
+    /// hardly moves in between]
+    #[arg(long, value_name = "T", value_parser = duration)]
+    pub max_gap: Option<u64>,
+    /// Drop a reading between poses that move faster than this
+    #[arg(long, value_name = "V", default_value = "10m/s", value_parser = max_speed)]
+    pub max_speed: MotionLimit,
     /// What an empty range cell is [default: no-echo in long tables, skip in wide ones]
     #[arg(long, value_enum)]
     pub empty: Option<Empty>,
@@ -47,6 +53,9 @@ pub struct LogArgs {
     /// Recordings: topic of the poses [default: transforms, else odometry, else poses]
     #[arg(long, value_name = "TOPIC")]
     pub pose_topic: Option<String>,
+    /// Recordings: topics of transforms, each with the static ones of its namespace [default: those of the readings' namespace]
+    #[arg(long, value_name = "TOPIC", value_delimiter = ',')]
+    pub tf_topics: Vec<String>,
     /// Recordings: frame of the poses [default: odom, else the topmost]
     #[arg(long, value_name = "FRAME")]
     pub fixed_frame: Option<String>,
@@ -56,6 +65,9 @@ pub struct LogArgs {
     /// Recordings: how much later than others a message may come and still be put in order [default: 2s]
     #[arg(long, value_name = "T", value_parser = duration)]
     pub reorder: Option<u64>,
+    /// Recordings: unit of ranges and limits that are not in metres (cm, mm, in) [default: the rig's, else m]
+    #[arg(long, value_name = "UNIT", value_parser = length_unit)]
+    pub range_unit: Option<Scale>,
     /// Recordings: longest message that is read, in bytes or with k, M, G [default: 64M]
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub max_message: Option<u64>,
@@ -86,15 +98,18 @@ impl LogArgs {
             rig: self.rig.as_deref().map(Rig::load).transpose()?.map(Arc::new),
             poses: self.poses.clone(),
             max_gap: self.max_gap,
+            max_speed: self.max_speed,
             empty: self.empty.map(EmptyCell::from),
             defaults: Defaults { field_of_view: Some(self.fov), range_resolution },
             mcap: McapWishes {
                 range_topics: self.range_topics.clone(),
                 pose_topic: self.pose_topic.clone(),
+                tf_topics: self.tf_topics.clone(),
                 fixed_frame: self.fixed_frame.clone(),
                 clock: self.clock.map(ClockChoice::from),
                 reorder: self.reorder,
                 max_message: self.max_message,
+                range_unit: self.range_unit,
             },
         })
     }
