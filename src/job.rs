@@ -11,7 +11,7 @@ use atm_core::Isometry2;
 
 use self::{outputs::Outputs, watched::Watched};
 use crate::{
-    error::{Error, Result},
+    error::{Error, Place, Result},
     intake::{Defaults, SensorModel},
     log::{
         Input, Source,
@@ -19,7 +19,7 @@ use crate::{
         csv::{CsvReadings, EmptyCell, PoseUse},
         format::Format,
         mcap::{
-            ClockChoice, McapReadings, Options,
+            Boresight, ClockChoice, McapReadings, Options,
             write::{Contents, SchemaKind},
         },
         output::{Output, overwrites, same_file},
@@ -37,6 +37,8 @@ use crate::{
 pub struct McapWishes {
     /// Topics of readings.
     pub range_topics: Vec<String>,
+    /// Topics of scans whose beams are cones.
+    pub scan_topics: Vec<String>,
     /// The topic of the poses.
     pub pose_topic: Option<String>,
     /// The topics of transforms, with those of static ones around them; all there are where it is empty.
@@ -51,6 +53,8 @@ pub struct McapWishes {
     pub max_message: Option<u64>,
     /// From raw ranges and limits to metres, instead of what the rig says.
     pub range_unit: Option<Scale>,
+    /// Along which axis of their frames sensors look.
+    pub boresight: Option<Boresight>,
 }
 
 impl McapWishes {
@@ -58,6 +62,7 @@ impl McapWishes {
     fn first(&self) -> Option<&'static str> {
         let made = [
             (!self.range_topics.is_empty(), "--range-topics"),
+            (!self.scan_topics.is_empty(), "--scan-topics"),
             (self.pose_topic.is_some(), "--pose-topic"),
             (!self.tf_topics.is_empty(), "--tf-topics"),
             (self.fixed_frame.is_some(), "--fixed-frame"),
@@ -65,6 +70,7 @@ impl McapWishes {
             (self.reorder.is_some(), "--reorder"),
             (self.max_message.is_some(), "--max-message"),
             (self.range_unit.is_some(), "--range-unit"),
+            (self.boresight.is_some(), "--boresight"),
         ];
         made.into_iter().find(|(made, _)| *made).map(|(_, name)| name)
     }
@@ -75,6 +81,8 @@ impl McapWishes {
 pub struct LogJob {
     /// The log: a path, or `-` for standard input.
     pub input: String,
+    /// Recordings that go on where the log ends: the parts in which a recorder has split it, in their order.
+    pub parts: Vec<String>,
     /// What opens the log and the second file's poses: [`Input::open`], or that with something around it.
     pub opens: fn(&str) -> Result<Input>,
     /// Its format, instead of what its content says.
@@ -141,6 +149,13 @@ impl LogJob {
         if format != Format::Csv {
             return Ok((Format::Mcap, input));
         }
+        if !self.parts.is_empty() {
+            let message = format!(
+                "{} is a table: only recordings can be read as one; with --out-dir each is fused alone",
+                input.name
+            );
+            return Err(Error::Settings { message });
+        }
         match self.mcap.first() {
             Some(name) => Err(Error::Settings { message: format!("{name}: {} is a table, no recording", input.name) }),
             None => Ok((format, input)),
@@ -152,11 +167,35 @@ impl LogJob {
         PoseLimits { gap: GapLimit::of(self.max_gap), motion: self.max_speed }
     }
 
+    /// Bytes of the log and of its parts, where that is known.
+    fn length(&self, input: &Input) -> Option<u64> {
+        let sizes = self.parts.iter().map(|part| std::fs::metadata(part).ok().map(|metadata| metadata.len()));
+        sizes.sum::<Option<u64>>()?.checked_add(input.length?)
+    }
+
+    /// Opens the recordings that go on where the log ends.
+    ///
+    /// # Errors
+    /// One can't be read, or is a table.
+    pub fn open_parts(&self) -> Result<Vec<(String, Input)>> {
+        let open = |path: &String| {
+            let (format, input) = (self.opens)(path)?.recognize(path)?;
+            match format {
+                Format::Csv => Err(Error::Settings {
+                    message: format!("{path} is a table: only recordings can be read as one; with --out-dir each is fused alone"),
+                }),
+                _ => Ok((path.clone(), input)),
+            }
+        };
+        self.parts.iter().map(open).collect()
+    }
+
     /// How a recording is read.
     pub fn options(&self, poses: PoseUse) -> Options {
         let (wishes, default) = (self.mcap.clone(), Options::default());
         Options {
             range_topics: wishes.range_topics,
+            scan_topics: wishes.scan_topics,
             pose_topic: wishes.pose_topic,
             fixed_frame: wishes.fixed_frame,
             clock: wishes.clock.unwrap_or(default.clock),
@@ -165,6 +204,7 @@ impl LogJob {
             tf_topics: wishes.tf_topics,
             limits: self.limits(),
             range_unit: wishes.range_unit,
+            boresight: wishes.boresight.unwrap_or_default(),
             poses,
             everything: false,
             defaults: self.defaults,
@@ -233,6 +273,7 @@ impl LogJob {
             self.check_rig()?;
             let options = Options { everything, ..self.options(PoseUse::Needed) };
             let log = McapReadings::open(&self.input, input, self.rig.clone(), track, options)?;
+            let log = log.followed_by(self.open_parts()?)?;
             return Ok(OpenLog::Mcap(Box::new(log)));
         }
         if everything {
@@ -318,9 +359,12 @@ impl FuseJob {
     pub fn check(&self, settings: &Settings) -> Result<()> {
         let refuse = |message: String| Err(Error::Settings { message });
         let outputs: Vec<&String> = [&self.output, &self.crossings, &self.summary].into_iter().flatten().collect();
-        let inputs = [Some(&self.log.input), self.log.poses.as_ref(), self.rig_file.as_ref()];
+        let inputs: Vec<Option<&String>> = [Some(&self.log.input), self.log.poses.as_ref(), self.rig_file.as_ref()]
+            .into_iter()
+            .chain(self.log.parts.iter().map(Some))
+            .collect();
         for (index, output) in outputs.iter().enumerate() {
-            if let Some(input) = inputs.into_iter().flatten().find(|input| overwrites(output, input)) {
+            if let Some(input) = inputs.iter().copied().flatten().find(|input| overwrites(output, input)) {
                 return refuse(format!("{output}: writing it would overwrite the input {input}"));
             }
             if outputs.iter().take(index).any(|other| other == output || same_file(other, output)) {
@@ -357,7 +401,7 @@ impl FuseJob {
     pub fn run(&self, settings: &Settings, progress: &mut Progress<'_>) -> Result<Ended> {
         self.check(settings)?;
         let (format, input) = self.log.open()?;
-        let length = input.length;
+        let length = self.log.length(&input);
         let mut log = self.log.readings(format, input, self.passthrough)?;
         let sensors = self.log.sensors()?;
         let input = outputs::Input {
@@ -380,12 +424,48 @@ impl FuseJob {
         };
         notes.extend(outputs.late());
         let partials = outputs.partials();
-        let result = result.and_then(|()| outputs.commit());
+        let nothing = match &log {
+            OpenLog::Mcap(log) if result.is_ok() => nothing_usable(&self.log.input, log, &summary),
+            _ => None,
+        };
+        let result = match nothing {
+            Some(error) => {
+                outputs.discard()?;
+                let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
+                return Ok(Ended { summary, pose_source, notes, result: counted.and(Err(error)), partials: Vec::new() });
+            }
+            None => result.and_then(|()| outputs.commit()),
+        };
         let partials = if result.is_err() { partials } else { Vec::new() };
         // Whatever came of the run: what was counted is true.
         let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
         Ok(Ended { summary, pose_source, notes, result: result.and(counted), partials })
     }
+}
+
+/// That nothing of a recording could be used though it is whole, and why.
+fn nothing_usable(name: &str, log: &McapReadings, summary: &Summary) -> Option<Error> {
+    let refuse = |message: String| {
+        let file = if name == "-" { "standard input" } else { name };
+        Some(Error::Format { place: Place { file: file.into(), line: 0, byte: 0 }, message })
+    };
+    let (silent, sensors) = log.unmatched();
+    if summary.readings > 0 && sensors > 0 && silent.len() == sensors {
+        let words = "no sensor of the rig has a reading: a reading belongs to the sensor whose `topic` is its topic or frame, or \
+                     whose `id` is its frame";
+        return refuse(format!("{words}; there are {}", log.readings_of().join(", ")));
+    }
+    if summary.readings > 0 || summary.input_damaged {
+        return None;
+    }
+    let worst = summary.dropped.iter().max_by_key(|(_, count, _)| *count);
+    refuse(match worst {
+        Some((reason, count, first)) => {
+            let of = summary.dropped.total();
+            format!("no reading can be used: {count} of {of} are {}, first at {}: {}", reason.key(), first.place, first.value)
+        }
+        None => "no reading can be used: there are none".to_owned(),
+    })
 }
 
 fn write_counts(mut output: Output, summary: &Summary) -> Result<()> {

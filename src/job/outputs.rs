@@ -39,6 +39,15 @@ impl Written {
         }
     }
 
+    /// Leaves nothing behind.
+    fn discard(self) -> Result<()> {
+        match self {
+            Self::Echoes(table) => table.discard(),
+            Self::Crossings(table) => table.discard(),
+            Self::Recording(recording) => recording.finish()?.discard(),
+        }
+    }
+
     /// Puts the file under its name.
     fn commit(self) -> Result<()> {
         match self {
@@ -63,6 +72,13 @@ impl<R: Line + Send + 'static> Table<R> {
 
     fn with<T>(&mut self, work: impl FnOnce(&mut Behind<R, Output>) -> io::Result<T>) -> Result<T> {
         work(&mut self.rows).map_err(|source| Error::Io { file: Arc::clone(&self.name), source })
+    }
+
+    fn discard(self) -> Result<()> {
+        match self.rows.into_table().map_err(|source| Error::Io { file: self.name, source })? {
+            Some(table) => table.into_inner().discard(),
+            None => Ok(()),
+        }
     }
 
     fn commit(self) -> Result<()> {
@@ -94,6 +110,8 @@ pub(super) struct Outputs {
     passes: bool,
     /// The log's own frames were taken over.
     adopted: bool,
+    /// Nothing goes out before there is a record: of a recording of which nothing can be used no header is left.
+    waits: bool,
 }
 
 impl Outputs {
@@ -138,6 +156,7 @@ impl Outputs {
             mounts: input.mounts.clone(),
             passes: job.passthrough,
             adopted: false,
+            waits: input.window.is_some(),
         })
     }
 
@@ -163,6 +182,11 @@ impl Outputs {
     /// The files that hold what was written until [`Outputs::commit`].
     pub(super) fn partials(&self) -> Vec<String> {
         self.partials.clone()
+    }
+
+    /// Leaves no file: nothing of the log could be used.
+    pub(super) fn discard(self) -> Result<()> {
+        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::discard)
     }
 
     /// Puts the files under their names.
@@ -213,6 +237,7 @@ impl EchoSink for Outputs {
     }
 
     fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        self.waits = false;
         if let (Some(frames), false) = (&row.frames, self.adopted) {
             self.adopt(frames);
         }
@@ -249,6 +274,9 @@ impl EchoSink for Outputs {
     }
 
     fn flush(&mut self) -> Result<()> {
+        if self.waits {
+            return Ok(());
+        }
         self.all().try_for_each(Written::flush)
     }
 }

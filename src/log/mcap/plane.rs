@@ -14,7 +14,10 @@ pub(super) fn on_plane(reading: &Reading, sensor: &Rigid) -> Result<(f64, View),
     // NaN is out of the plane, too.
     if up.is_nan() || up.abs() > STEEPEST {
         let degrees = libm::asin(up.clamp(-1.0, 1.0)).to_degrees();
-        let words = format!("its boresight points {degrees:.1}deg out of the plane, and may 10deg");
+        let words = format!(
+            "its boresight, the x axis of its frame, points {degrees:.1}deg out of the plane, and may 10deg; if it looks along another \
+             axis, --boresight z or -z; else its mount in a rig cures it (--rig)"
+        );
         return Err(Lost::new(Reason::Tilted, words));
     }
     let cosine = (forward * forward + left * left).sqrt();

@@ -6,11 +6,13 @@ use atm_core::Isometry2;
 
 use super::{
     clocks::Clocks,
-    decode::{Decoder, Kind, Said},
-    options::Options,
+    decode::{Decoder, Kind, Measured, Said},
+    finding::Finding,
+    options::{Boresight, Options},
     order::{Order, Out},
     plane::{on_plane, view},
     raw::{Channel, Message},
+    rigid::Rigid,
     sensors::{Sensors, Sight},
     topics::{is_clock, kind_of},
     tree::{Frame, Hold},
@@ -22,7 +24,7 @@ use crate::{
     pipeline::{AnyTrack, Defaults},
     rig::Rig,
     stamp,
-    track::{Pose, seconds, time_backwards},
+    track::{Pose, time_backwards},
 };
 
 /// How long transforms are kept for readings that come behind them, in nanoseconds: 10 s, as tf2 does.
@@ -30,16 +32,28 @@ const MEMORY: u64 = 10_000_000_000;
 /// Transforms that are kept in case that the clock was set back, at most.
 const MOST_LATE: usize = 1 << 13;
 
+/// Frames that are named in one finding, at most.
+const MOST_OPTICAL: usize = 64;
+
 /// A reading that waits for its turn.
 pub(super) struct Reading {
     t: i64,
     log_time: u64,
     sensor: u16,
+    file: Arc<str>,
     frame: Option<Frame>,
+    /// Where the boresight points in the frame, where not along its x axis.
+    turn: Option<Rigid>,
     pub(super) range: f64,
     pub(super) sight: Sight,
     topic: Arc<str>,
     byte: u64,
+}
+
+impl Reading {
+    fn place(&self) -> Place {
+        Place { file: self.file.clone(), line: 0, byte: self.byte }
+    }
 }
 
 /// A transform or pose that would be of use if the clock was set back.
@@ -74,6 +88,12 @@ pub(super) struct Reader {
     frames: Option<Arc<Frames>>,
     said: Said,
     saw_ranges: bool,
+    /// Sensors of which the message has said something already.
+    in_message: Vec<u16>,
+    /// Namespaces other than the readings' whose transforms are used.
+    borrowed: Vec<String>,
+    /// Frames of sensors that by their name look along z, and are read otherwise.
+    optical: Vec<String>,
 }
 
 impl Reader {
@@ -97,6 +117,9 @@ impl Reader {
             frames: None,
             said: Said::default(),
             saw_ranges: false,
+            in_message: Vec::new(),
+            borrowed: Vec::new(),
+            optical: Vec::new(),
             options,
         }
     }
@@ -107,6 +130,10 @@ impl Reader {
 
     pub(super) const fn options(&self) -> &Options {
         &self.options
+    }
+
+    pub(super) const fn sensors(&self) -> &Sensors {
+        &self.sensors
     }
 
     pub(super) fn ids(&self) -> &[Arc<str>] {
@@ -137,7 +164,7 @@ impl Reader {
         if is_clock(channel) {
             self.clocks.is_simulated = true;
         }
-        if Kind::of(channel).is_some_and(|kind| kind != Kind::Range) {
+        if Kind::of(channel).is_some_and(|kind| !kind.is_reading()) {
             self.whereabouts.expect(&channel.topic);
         }
     }
@@ -145,6 +172,12 @@ impl Reader {
     /// There will be no more messages.
     pub(super) fn end(&mut self) {
         self.order.end();
+    }
+
+    /// What comes is of another recording, in this file.
+    pub(super) fn restart(&mut self, file: Arc<str>) {
+        self.name = file;
+        self.lines.clear();
     }
 
     fn place(&self, byte: u64) -> Place {
@@ -160,9 +193,10 @@ impl Reader {
         problems: &mut dyn FnMut(Problem),
     ) {
         self.order.goes_on(message.log_time);
-        let topics = &self.options.range_topics;
+        let (topics, scans) = (&self.options.range_topics, &self.options.scan_topics);
+        self.in_message.clear();
         let line = self.lines.entry(channel.id).or_insert_with(|| {
-            let kind = kind_of(channel, topics)?;
+            let kind = kind_of(channel, topics, scans)?;
             Some(Line { topic: channel.topic.as_str().into(), kind, decoder: Decoder::for_channel(kind, channel) })
         });
         let Some(line) = line.take() else { return };
@@ -201,9 +235,9 @@ impl Reader {
             .clocks
             .time(&line.topic, said.stamp(), message)
             .map_err(|(reason, words)| (reason, words.to_owned()))?;
-        if line.kind == Kind::Range {
+        if line.kind.is_reading() {
             self.saw_ranges = true;
-            return self.reading(line, said, t, message.log_time, byte);
+            return self.readings(line, said, t, (message.log_time, byte));
         }
         self.where_is(&line.topic, line.kind, said, (t, log_time))?;
         // Earlier than what was asked for already: of no use, except if the clock was set back.
@@ -220,17 +254,46 @@ impl Reader {
             Kind::Transforms => self.whereabouts.add_transform(topic, said, times, Hold::Moment),
             Kind::Transform => self.whereabouts.add_transform(topic, said, times, Hold::UntilNext),
             Kind::Odometry | Kind::Pose => self.whereabouts.add_pose(topic, kind, said, times),
-            Kind::Range => Ok(()),
+            Kind::Range | Kind::Ranges | Kind::Scan => Ok(()),
         };
         added.map_err(|words| (Reason::BadTransform, words))
     }
 
-    /// Holds a reading back until its turn.
-    fn reading(&mut self, line: &Line, said: &Said, t: i64, log_time: u64, byte: u64) -> Result<(), (Reason, String)> {
+    /// Takes in the reading, or each of the readings, of a message.
+    fn readings(&mut self, line: &Line, said: &Said, t: i64, at: (u64, u64)) -> Result<(), (Reason, String)> {
         self.whereabouts.comes_from(&line.topic).map_err(|lost| (lost.reason, lost.words))?;
-        let measured = self.sensors.in_metres(said.measured());
-        let sensor = self.sensors.find(&line.topic, &said.frame)?;
+        if line.kind != Kind::Scan {
+            let sensor = self.sensors.find(&line.topic, &said.frame)?;
+            if self.in_message.contains(&sensor) {
+                let words = "its message has more than one reading of this frame, and no two sensors are at one place";
+                return Err((Reason::SharedFrame, format!("`{}`: {words}", said.frame)));
+            }
+            self.in_message.push(sensor);
+            return self.reading(line, said, (sensor, None, said.measured()), t, at);
+        }
+        let mut outcome = Ok(());
+        for (index, direction, measured) in said.scan().beams() {
+            let id = index.map_or_else(|| said.frame.clone(), |index| format!("{}/{index}", said.frame));
+            let turn = Rigid::flat(0.0, 0.0, libm::cos(direction), libm::sin(direction));
+            let sensor = self.sensors.find(&line.topic, &id);
+            let taken = sensor.and_then(|sensor| self.reading(line, said, (sensor, Some(turn), measured), t, at));
+            outcome = outcome.and(taken);
+        }
+        outcome
+    }
+
+    /// Holds a reading back until its turn.
+    fn reading(
+        &mut self,
+        line: &Line,
+        said: &Said,
+        (sensor, turn, measured): (u16, Option<Rigid>, Measured),
+        t: i64,
+        (log_time, byte): (u64, u64),
+    ) -> Result<(), (Reason, String)> {
+        let measured = self.sensors.in_metres(measured);
         let sight = self.sensors.sight(sensor, measured)?;
+        self.note_optical(sensor, &said.frame);
         let frame = match said.frame.is_empty() {
             true => None,
             false => Some(self.whereabouts.frame(&said.frame).map_err(|words| (Reason::NoTransform, words))?),
@@ -238,8 +301,8 @@ impl Reader {
         if self.order.is_timely(t) {
             self.late.clear();
         }
-        let reading =
-            Reading { t, log_time, sensor, frame, range: measured.range, sight, topic: line.topic.clone(), byte };
+        let (range, topic, file) = (measured.range, line.topic.clone(), self.name.clone());
+        let reading = Reading { t, log_time, sensor, file, frame, turn, range, sight, topic, byte };
         self.order.push(t, log_time, reading);
         Ok(())
     }
@@ -259,7 +322,7 @@ impl Reader {
         let reading = match out {
             Out::Next(reading) => reading,
             Out::Late(reading) => {
-                problems(time_backwards(reading.t, self.order.passed(), self.place(reading.byte)));
+                problems(time_backwards(reading.t, self.order.passed(), reading.place()));
                 return Ok(Some(Next::Unusable));
             }
             Out::SetBack => {
@@ -273,7 +336,7 @@ impl Reader {
         };
         row.t = reading.t;
         row.log_time = time(reading.log_time);
-        row.place = self.place(reading.byte);
+        row.place = reading.place();
         let placed = self.placed(&reading, problems)?;
         let needed = self.options.poses == PoseUse::Needed;
         let (pose, range, view) = match placed {
@@ -295,23 +358,41 @@ impl Reader {
         let placed = self.whereabouts.place(seat, problems)?;
         self.compare_clocks(reading, seat);
         if let Err(Lost { words, is_final: true, .. }) = placed {
-            return Err(Error::Format { place: self.place(reading.byte), message: format!("{}: {words}", reading.topic) });
+            return Err(Error::Format { place: reading.place(), message: format!("{}: {words}", reading.topic) });
         }
         if self.frames.is_none() && placed.is_ok() {
             self.frames = Some(Arc::new(self.whereabouts.frames(seat)));
+            self.borrowed = self.whereabouts.borrowed(reading.frame).into_iter().map(str::to_owned).collect();
         }
         let projected = placed.and_then(|placed| {
-            let (range, view) = on_plane(reading, &placed.sensor)?;
+            // A rig's mount is along the boresight already.
+            let axis = self.options.boresight.rotation();
+            let turns = [axis, reading.turn].into_iter().flatten().filter(|_| seat.mount.is_none());
+            let sensor = turns.fold(placed.sensor, |sensor, turn| sensor.of(&turn));
+            let (range, view) = on_plane(reading, &sensor)?;
             Ok((Some(placed.robot), range, view))
         });
         Ok(match projected {
             Ok(taken) => Some(taken),
             Err(Lost { reason, words, .. }) => {
                 let value = format!("{} at {}: {words}", reading.topic, stamp::text(reading.t));
-                problems(Problem { reason, place: self.place(reading.byte), value });
+                problems(Problem { reason, place: reading.place(), value });
                 None
             }
         })
+    }
+
+    /// Notes a frame that by its name looks along z, where that is not how it is read.
+    fn note_optical(&mut self, sensor: u16, frame: &str) {
+        let looks_along_z = frame.ends_with("_optical_frame") || frame.ends_with("_optical");
+        if looks_along_z
+            && self.options.boresight == Boresight::X
+            && self.sensors.mount(sensor).is_none()
+            && self.optical.len() < MOST_OPTICAL
+            && !self.optical.iter().any(|known| known == frame)
+        {
+            self.optical.push(frame.to_owned());
+        }
     }
 
     /// Takes in how far the clocks of a reading and of its poses are apart.
@@ -322,52 +403,42 @@ impl Reader {
         }
     }
 
+    /// By how much stamps are later than the times of recording, in words.
+    pub(super) fn clock_words(&self) -> Option<String> {
+        self.clocks.words()
+    }
+
     /// What a person should know of how the recording was read.
-    pub(super) fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        if let Some(words) = self.clocks.words() {
-            notes.push(format!("clock     {words}"));
+    pub(super) fn findings(&self) -> Vec<Finding> {
+        let owned = |ids: Vec<&str>| -> Vec<String> { ids.into_iter().map(str::to_owned).collect() };
+        let mut findings = Vec::new();
+        findings.extend(self.clocks.other());
+        findings.extend(self.clocks.lag(self.options.limits.gap.max()));
+        let bridged = self.whereabouts.bridged();
+        findings.extend(bridged.map(|(within, step)| Finding::SparsePoses { within, step }));
+        findings.extend(self.whereabouts.doubted().into_iter().map(|(what, doubts)| Finding::TwoSources {
+            what,
+            returning: doubts.returning,
+            widest: doubts.widest,
+            contradicted: doubts.contradicted,
+        }));
+        let (idle, _) = self.sensors.unmatched();
+        if !idle.is_empty() && self.options.range_topics.is_empty() {
+            findings.push(Finding::IdleSensors { ids: owned(idle) });
         }
-        notes.extend(self.clocks.lags(self.options.limits.gap.max()));
-        notes.extend(self.pose_notes());
+        if !self.borrowed.is_empty() {
+            findings.push(Finding::BorrowedTransforms { namespaces: self.borrowed.clone() });
+        }
+        if !self.optical.is_empty() {
+            findings.push(Finding::OpticalFrames { frames: self.optical.clone() });
+        }
         let blind = self.sensors.without_beam();
         if !blind.is_empty() {
             let beam = self.options.defaults.field_of_view.map_or(Defaults::FIELD_OF_VIEW, |beam| beam.field_of_view());
-            let ids = blind.join(", ");
-            notes.push(format!(
-                "beam      {:.1}deg is assumed of {ids}, whose messages do not say it",
-                beam.to_degrees()
-            ));
+            findings.push(Finding::AssumedBeam { ids: owned(blind), beam });
         }
-        notes
-    }
-}
-
-impl Reader {
-    /// What a person should know of the poses.
-    fn pose_notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        if let Some((within, step)) = self.whereabouts.bridged() {
-            notes.push(format!(
-                "gaps      poses up to {} apart are used, between which the robot moved {:.2} m and {:.0}deg at most; --max-gap \
-                 bounds that",
-                seconds(within),
-                step.distance,
-                step.turn.to_degrees(),
-            ));
-        }
-        for (what, doubts) in self.whereabouts.doubted() {
-            let times = |count: u64| format!("{count} times");
-            let said = match doubts.returning {
-                0 => format!("{} had another value at the same time", times(doubts.contradicted)),
-                returning => format!("{} jumped to and fro, by up to {:.2} m", times(returning), doubts.widest),
-            };
-            notes.push(format!(
-                "warning: the {what} {said}: two sources publish them; leave one out with --tf-topics or --pose-topic, or record \
-                 it alone"
-            ));
-        }
-        notes
+        findings.extend(self.sensors.findings());
+        findings
     }
 }
 

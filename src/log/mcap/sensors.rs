@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use atm_core::{Beam, Limits, RangeResolution};
 
-use super::{decode::Measured, rigid::Rigid};
+use super::{decode::Measured, finding::Finding, rigid::Rigid, tally::Tally};
 use crate::{
     error::Reason,
     log::csv::MAX_ID,
@@ -80,6 +80,7 @@ pub(super) struct Sensors {
     beams: Vec<Option<Beam<f64>>>,
     /// Sensors whose readings do not say their beam.
     blind: Vec<u16>,
+    tallies: Vec<Tally>,
 }
 
 impl Sensors {
@@ -93,6 +94,7 @@ impl Sensors {
             topics: Vec::new(),
             beams: Vec::new(),
             blind: Vec::new(),
+            tallies: Vec::new(),
         };
         if let Some(rig) = rig {
             for (index, sensor) in (0..=u16::MAX).zip(rig.sensors()) {
@@ -114,6 +116,7 @@ impl Sensors {
     fn grow(&mut self) {
         self.topics.resize(self.ids.len(), None);
         self.beams.resize(self.ids.len(), None);
+        self.tallies.resize(self.ids.len(), Tally::default());
     }
 
     pub(super) fn ids(&self) -> &[Arc<str>] {
@@ -137,7 +140,7 @@ impl Sensors {
         })
     }
 
-    /// The sensor of a reading.
+    /// The sensor of a reading: of the rig by its topic or frame, else by its frame.
     pub(super) fn find(&mut self, topic: &Arc<str>, frame: &str) -> Result<u16, Fault> {
         let frame = frame.strip_prefix('/').unwrap_or(frame);
         let known = self.by_name.get(&**topic).filter(|_| self.rig.is_some()).or_else(|| self.by_name.get(frame));
@@ -150,7 +153,10 @@ impl Sensors {
         match owner {
             Some(owner) if *owner != *topic => {
                 let words =
-                    format!("the sensor of frame `{frame}` has its readings under {owner}; choose with --range-topics");
+                    format!(
+                        "the sensor of frame `{frame}` has its readings under {owner}; a rig with `topic = \"{topic}\"` and a mount \
+                         makes another sensor of it (--rig), and --range-topics chooses"
+                    );
                 Err((Reason::SharedFrame, words))
             }
             _ => {
@@ -205,7 +211,7 @@ impl Sensors {
         let kept = self.beams.get(usize::from(sensor)).copied().flatten();
         let beam = match kept.filter(|beam| beam.field_of_view() == angle) {
             Some(beam) => beam,
-            None => Beam::new(angle).map_err(|error| bad(format!("a field_of_view of {angle}: {error}")))?,
+            None => Beam::new(angle).map_err(|error| bad(format!("a field_of_view of {angle}: {error}{}", beam_cure(angle))))?,
         };
         if let Some(kept) = self.beams.get_mut(usize::from(sensor)) {
             *kept = Some(beam);
@@ -213,7 +219,16 @@ impl Sensors {
         let step = self.of_rig(sensor).and_then(Sensor::range_resolution).unwrap_or(Defaults::RANGE_RESOLUTION);
         let resolution = self.defaults.range_resolution.map_or_else(|| RangeResolution::new(step), Ok);
         let range_resolution = resolution.map_err(|error| bad(error.to_string()))?;
-        Ok(Sight { limits, beam, range_resolution })
+        let sight = Sight { limits, beam, range_resolution };
+        if let Some(tally) = self.tallies.get_mut(usize::from(sensor)) {
+            tally.add(&measured, &sight, ours.is_none() && theirs.is_some());
+        }
+        Ok(sight)
+    }
+
+    /// What is wrong with all readings of a sensor.
+    pub(super) fn findings(&self) -> impl Iterator<Item = Finding> {
+        self.ids.iter().zip(&self.tallies).flat_map(|(id, tally)| tally.findings(id))
     }
 
     /// Ids of sensors for whose beam a default had to do.
@@ -233,5 +248,15 @@ fn limits(measured: Measured, sensor: Option<&Sensor>) -> Result<Limits<f64>, Fa
         let words = format!("min_range and max_range are both {min}: it only says whether something is there");
         return Err((Reason::FixedDistance, words));
     }
-    Limits::new(min, max).map_err(|_| (Reason::BadLimits, format!("min_range {min}, max_range {max}")))
+    Limits::new(min, max).map_err(|_| {
+        let is = if min > max { "is above" } else { "goes with" };
+        let cure = "min_range and max_range in a rig cure it (--rig)";
+        (Reason::BadLimits, format!("min_range {min} {is} max_range {max}; {cure}"))
+    })
+}
+
+/// What a beam that is none may be, and what to do.
+fn beam_cure(angle: f64) -> String {
+    let degrees = if angle > 0.0 && angle <= 180.0 { format!("; {angle} degrees?") } else { String::new() };
+    format!("{degrees} A field_of_view in a rig cures it (--rig)")
 }

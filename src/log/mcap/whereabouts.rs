@@ -439,6 +439,9 @@ impl Whereabouts {
                     name(own),
                 ),
             ),
+            (Miss::Apart(words), _) if seat.mount.is_none() => {
+                Lost::apart(format!("{words}; give the sensor's mount with --rig"))
+            }
             _ => Lost::missed(miss),
         }
     }

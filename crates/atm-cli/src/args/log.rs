@@ -7,7 +7,12 @@ use atm::{
     error::Result,
     intake::Defaults,
     job::{LogJob, McapWishes},
-    log::{Input, csv::EmptyCell, format, mcap::ClockChoice},
+    log::{
+        Input,
+        csv::EmptyCell,
+        format,
+        mcap::{Boresight, ClockChoice},
+    },
     rig::Rig,
     track::MotionLimit,
     units::Scale,
@@ -50,6 +55,9 @@ pub struct LogArgs {
     /// Recordings: topics of readings [default: all of sensor_msgs/Range]
     #[arg(long, value_name = "TOPIC", value_delimiter = ',')]
     pub range_topics: Vec<String>,
+    /// Recordings: topics of sensor_msgs/LaserScan whose beams are a sonar's cones
+    #[arg(long, value_name = "TOPIC", value_delimiter = ',')]
+    pub scan_topics: Vec<String>,
     /// Recordings: topic of the poses [default: transforms, else odometry, else poses]
     #[arg(long, value_name = "TOPIC")]
     pub pose_topic: Option<String>,
@@ -65,6 +73,9 @@ pub struct LogArgs {
     /// Recordings: how much later than others a message may come and still be put in order [default: 2s]
     #[arg(long, value_name = "T", value_parser = duration)]
     pub reorder: Option<u64>,
+    /// Recordings: axis of their frames along which sensors look [default: x]
+    #[arg(long, value_enum, allow_hyphen_values = true)]
+    pub boresight: Option<Axis>,
     /// Recordings: unit of ranges and limits that are not in metres (cm, mm, in) [default: the rig's, else m]
     #[arg(long, value_name = "UNIT", value_parser = length_unit)]
     pub range_unit: Option<Scale>,
@@ -93,6 +104,7 @@ impl LogArgs {
     ) -> Result<LogJob> {
         Ok(LogJob {
             input: input.to_owned(),
+            parts: Vec::new(),
             opens: Input::open,
             from: from.map(format::Format::from),
             rig: self.rig.as_deref().map(Rig::load).transpose()?.map(Arc::new),
@@ -103,6 +115,7 @@ impl LogArgs {
             defaults: Defaults { field_of_view: Some(self.fov), range_resolution },
             mcap: McapWishes {
                 range_topics: self.range_topics.clone(),
+                scan_topics: self.scan_topics.clone(),
                 pose_topic: self.pose_topic.clone(),
                 tf_topics: self.tf_topics.clone(),
                 fixed_frame: self.fixed_frame.clone(),
@@ -110,6 +123,7 @@ impl LogArgs {
                 reorder: self.reorder,
                 max_message: self.max_message,
                 range_unit: self.range_unit,
+                boresight: self.boresight.map(Boresight::from),
             },
         })
     }
@@ -120,6 +134,39 @@ impl From<Format> for format::Format {
         match format {
             Format::Csv => Self::Csv,
             Format::Mcap => Self::Mcap,
+        }
+    }
+}
+
+/// An axis of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Axis {
+    /// Forward, as sensor_msgs/Range has it
+    X,
+    /// To the left
+    Y,
+    /// Upward; forward in frames of cameras
+    Z,
+    /// Backward
+    #[value(name = "-x")]
+    MinusX,
+    /// To the right
+    #[value(name = "-y")]
+    MinusY,
+    /// Downward
+    #[value(name = "-z")]
+    MinusZ,
+}
+
+impl From<Axis> for Boresight {
+    fn from(axis: Axis) -> Self {
+        match axis {
+            Axis::X => Self::X,
+            Axis::Y => Self::Y,
+            Axis::Z => Self::Z,
+            Axis::MinusX => Self::MinusX,
+            Axis::MinusY => Self::MinusY,
+            Axis::MinusZ => Self::MinusZ,
         }
     }
 }

@@ -96,7 +96,7 @@ fn find_mcap(job: &LogJob, input: Input) -> Result<Findings, Error> {
         ids,
         survey,
         pose_source: second_file.or_else(|| poses_of(&source)),
-        notes: source.notes(),
+        notes: source.clock_words().into_iter().chain(source.notes()).collect(),
         rig: job.rig.clone(),
     })
 }
