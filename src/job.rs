@@ -19,10 +19,11 @@ use crate::{
         csv::{CsvReadings, EmptyCell, PoseUse},
         format::Format,
         mcap::{
-            Boresight, ClockChoice, McapReadings, Options,
+            Boresight, ClockChoice, Finding, McapReadings, Options,
             write::{Contents, SchemaKind},
         },
         output::{Output, overwrites, same_file},
+        plausible::Plausible,
         poses::PoseLog,
     },
     pipeline::{self, AnyTrack, Settings},
@@ -415,11 +416,16 @@ impl FuseJob {
         }
         let counts = self.summary.as_deref().map(Output::create).transpose()?;
         let (source, track) = log.source();
-        let mut watched = Watched::new(source, length, progress);
+        let mut plausible = Plausible::new(source, self.log.max_speed);
+        let mut watched = Watched::new(&mut plausible, length, progress);
         let (summary, result) = pipeline::fuse(&mut watched, track, &sensors, settings, &mut outputs, &mut |_| {});
         let result = result.and_then(|()| watched.finish());
         let (pose_source, mut notes) = match &log {
-            OpenLog::Csv(..) => (None, Vec::new()),
+            OpenLog::Csv(_, track) => {
+                let bridged = track.as_ref().and_then(Track::bridged);
+                let sparse = bridged.map(|(within, step)| Finding::SparsePoses { within, step }.to_string());
+                (None, sparse.into_iter().collect())
+            }
             OpenLog::Mcap(log) => (poses_of(log), log.notes()),
         };
         notes.extend(outputs.late());

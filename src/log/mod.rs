@@ -15,6 +15,7 @@ pub mod format;
 mod line;
 pub mod mcap;
 pub mod output;
+pub(crate) mod plausible;
 pub mod poses;
 mod record;
 pub mod table;
