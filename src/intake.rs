@@ -12,7 +12,7 @@ use crate::{
     rig::Rig,
     stamp,
     summary::Summary,
-    track::{Clock, Pose, PoseStream, Tick, Track, time_backwards},
+    track::{Clock, Pose, PoseMiss, PoseStream, Tick, Track, time_backwards},
 };
 
 /// The robot's path, from whatever file.
@@ -194,7 +194,8 @@ impl<C: Consumer> Intake<'_, C> {
             return self.turn_back(row);
         }
         let Some(pose) = self.pose(row)? else {
-            self.summary.dropped.add(no_pose(row));
+            let miss = self.track.as_deref().map(Track::miss);
+            self.summary.dropped.add(no_pose(row, miss));
             return Ok(());
         };
         self.summary.skipped.empty += row.empty;
@@ -276,7 +277,10 @@ fn readings_at<'a>(
     })
 }
 
-/// The problem of a record for whose time there is no pose.
-pub(crate) fn no_pose(row: &Row) -> Problem {
-    Problem { reason: Reason::NoPose, place: row.place.clone(), value: format!("t {}", stamp::text(row.t)) }
+/// The problem of a record for whose time there is no pose, with what is known of the poses around it.
+pub(crate) fn no_pose(row: &Row, miss: Option<PoseMiss>) -> Problem {
+    let impossible = miss.is_some_and(PoseMiss::is_impossible);
+    let reason = if impossible { Reason::ImpossibleMotion } else { Reason::NoPose };
+    let words = miss.map(|miss| format!(": of the poses {miss}")).unwrap_or_default();
+    Problem { reason, place: row.place.clone(), value: format!("t {}{words}", stamp::text(row.t)) }
 }

@@ -18,6 +18,7 @@ pub mod log;
 pub mod map;
 pub mod pipeline;
 pub mod rig;
+mod sample;
 pub mod simulate;
 pub mod stamp;
 pub mod storage;

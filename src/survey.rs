@@ -55,7 +55,7 @@ pub fn survey(source: &mut dyn Source, mut track: Option<&mut AnyTrack>, models:
         if let Some(track) = track.as_deref_mut() {
             pose = track.pose_at(survey.clock_resets, row.t, &mut |problem| survey.dropped.add(problem))?;
             if pose.is_none() {
-                survey.dropped.add(crate::intake::no_pose(&row));
+                survey.dropped.add(crate::intake::no_pose(&row, Some(track.miss())));
                 continue;
             }
         }

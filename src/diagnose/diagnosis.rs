@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     error::{Problem, Reason},
+    log::mcap::Finding,
     stamp,
 };
 
@@ -71,6 +72,8 @@ pub enum Diagnosis {
         /// The first.
         first: Problem,
     },
+    /// What a recording's format finds out.
+    Recording(Finding),
     /// Nothing says where the robot was.
     NoPoses {
         /// Readings without a pose.
@@ -238,6 +241,7 @@ impl Diagnosis {
             | Self::SortedBySensor { .. }
             | Self::TimeStandsStill { .. } => u64::MAX,
             Self::LittleResolved { arcs, resolved, .. } => arcs.saturating_sub(*resolved),
+            Self::Recording(finding) => finding.cost(),
             Self::FirstLine { .. } => 1,
             Self::ClockSetBack { .. } | Self::Silent { .. } => 0,
         }
@@ -256,6 +260,7 @@ impl Diagnosis {
     pub fn advice(&self) -> Advice {
         let (cause, evidence, flag) = match self {
             Self::Unusable { reason, count: number, first } => unusable(*reason, *number, first),
+            Self::Recording(finding) => return finding.advice(),
             Self::NoPoses { readings } => (
                 "nothing says where the robot was".into(),
                 format!("{} without a pose, and no columns x, y, yaw", count(*readings, "reading")),
@@ -305,10 +310,7 @@ impl Diagnosis {
                     format!("the middle one of {} is {}", count(*ranges, "range"), length(*median))
                 };
                 let (cause, flag) = match unit {
-                    Some(unit) => (
-                        format!("the ranges are in {unit}, not in m"),
-                        format!("[log] range_unit = \"{unit}\" in the rig"),
-                    ),
+                    Some(unit) => (format!("the ranges are in {unit}, not in m"), format!("--range-unit {unit}")),
                     None => (
                         "the ranges do not fit the rig".into(),
                         "[log] range_unit, or another max_range, in the rig".into(),
@@ -505,6 +507,12 @@ fn unusable(reason: Reason, number: u64, first: &Problem) -> Words {
         }
         Reason::TimeBackwards => ("records that are earlier than those before them", Some("the log sorted by t")),
         Reason::TooLong => ("records that are too long", None),
+        Reason::ImpossibleMotion => (
+            "poses that move faster than a robot does",
+            Some("--max-speed, or [log] pose_unit and yaw_unit in the rig if the poses are in other units"),
+        ),
+        Reason::OtherRobot => ("readings of another robot", Some("--range-topics and --tf-topics of one robot")),
+        Reason::TrailingData => ("bytes behind the end of the recording", None),
         Reason::NoStamp => ("messages without a time stamp", Some("--clock log")),
         Reason::SharedFrame => ("sensors that share a frame", Some("--range-topics, or --rig with topic")),
         Reason::BadLimits => {

@@ -64,8 +64,10 @@ pub fn diagnose(
     // What is told of the order of the rows need not be told of each of them.
     let unusable = dropped.iter().filter(|(reason, ..)| !(sorted && *reason == Reason::TimeBackwards));
     all.extend(unusable.map(|(reason, count, first)| Diagnosis::Unusable { reason, count, first: first.clone() }));
-    let (poses, ranges) = (poses(evidence), ranges(evidence));
-    let fits = ranges.is_none();
+    // What a format says of the ranges of each sensor is closer than what all of them show together.
+    let told = all.iter().any(|found| matches!(found, Diagnosis::Recording(finding) if finding.is_of_ranges()));
+    let (poses, ranges) = (poses(evidence), ranges(evidence).filter(|_| !told));
+    let fits = ranges.is_none() && !told;
     all.extend(poses);
     all.extend(ranges);
     all.extend(duplicates(evidence));

@@ -120,7 +120,7 @@ fn millimetres_and_centimetres_are_told_by_the_maximum_that_they_exceed() {
     for (unit, scale) in [("mm", 1000.0), ("cm", 100.0)] {
         let found = Drive::straight().ranges(|_, _, range| range * scale).only();
         assert!(matches!(found, Diagnosis::RangeUnit { unit: Some(found), .. } if found == unit), "{found:?}");
-        says(&found, &["400 of 400 ranges", "maximum of 4.00 m", &format!("range_unit = \"{unit}\"")]);
+        says(&found, &["400 of 400 ranges", "maximum of 4.00 m", &format!("--range-unit {unit}")]);
     }
     // Without a maximum, by their size.
     let mut drive = Drive::straight().ranges(|_, _, range| range * 1000.0);

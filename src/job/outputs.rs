@@ -53,14 +53,18 @@ impl Written {
         self.into_output()?.map_or(Ok(()), Output::commit)
     }
 
-    /// Takes it back.
-    fn discard(self) -> Result<()> {
+    /// Takes a file back; a pipe is ended as usual.
+    fn take_back(self) -> Result<()> {
         match self.into_output()? {
-            // A pipe has it already.
             Some(output) if output.partial_path().is_none() => output.commit(),
             Some(output) => output.discard(),
             None => Ok(()),
         }
+    }
+
+    /// Leaves nothing behind, in a pipe neither.
+    fn discard(self) -> Result<()> {
+        self.into_output()?.map_or(Ok(()), Output::discard)
     }
 }
 
@@ -107,6 +111,8 @@ pub(super) struct Outputs {
     passes: bool,
     /// The log's own frames were taken over.
     adopted: bool,
+    /// Nothing goes out before there is a record: of a recording of which nothing can be used no header is left.
+    waits: bool,
 }
 
 impl Outputs {
@@ -151,6 +157,7 @@ impl Outputs {
             mounts: input.mounts.clone(),
             passes: job.passthrough,
             adopted: false,
+            waits: input.window.is_some(),
         })
     }
 
@@ -178,14 +185,19 @@ impl Outputs {
         self.partials.clone()
     }
 
+    /// Leaves no file: nothing of the log could be used.
+    pub(super) fn discard(self) -> Result<()> {
+        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::discard)
+    }
+
     /// Puts the files under their names.
     pub(super) fn commit(self) -> Result<()> {
         self.crossings.into_iter().chain(self.echoes).try_for_each(Written::commit)
     }
 
-    /// Leaves no files: nothing could be used. What goes elsewhere, to a pipe, ends well.
-    pub(super) fn discard(self) -> Result<()> {
-        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::discard)
+    /// Leaves no file: nothing of the log could be used. A pipe is ended as usual.
+    pub(super) fn take_back(self) -> Result<()> {
+        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::take_back)
     }
 
     /// Takes over what the log calls its frames, and leaves out the transforms that it has itself where it is copied.
@@ -231,6 +243,7 @@ impl EchoSink for Outputs {
     }
 
     fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        self.waits = false;
         if let (Some(frames), false) = (&row.frames, self.adopted) {
             self.adopt(frames);
         }
@@ -267,6 +280,9 @@ impl EchoSink for Outputs {
     }
 
     fn flush(&mut self) -> Result<()> {
+        if self.waits {
+            return Ok(());
+        }
         self.all().try_for_each(Written::flush)
     }
 }

@@ -16,6 +16,7 @@ pub mod joined;
 mod line;
 pub mod mcap;
 pub mod output;
+pub(crate) mod plausible;
 pub mod poses;
 mod record;
 pub mod sorted;

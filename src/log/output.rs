@@ -116,14 +116,16 @@ impl Output {
         self.finish().map_err(|source| Error::Io { file: self.name.clone(), source })
     }
 
-    /// Takes back what was written to a file of its own: nothing appears under the name, and what is there already stays.
+    /// Throws away what was not written yet, and removes the partial file: there is nothing to be had.
+    ///
+    /// # Errors
+    /// The partial file can't be removed.
     pub fn discard(self) -> Result<()> {
-        let Self { sink, name, pending } = self;
-        // What is still gathered is not written any more.
-        drop(sink.into_parts());
-        match pending {
-            Some(Pending { partial, .. }) => {
-                fs::remove_file(partial).map_err(|source| Error::Io { file: name, source })
+        // Taken apart, so that nothing of what is gathered goes out.
+        let (_sink, _gathered) = self.sink.into_parts();
+        match &self.pending {
+            Some(pending) => {
+                fs::remove_file(&pending.partial).map_err(|source| Error::Io { file: self.name.clone(), source })
             }
             None => Ok(()),
         }

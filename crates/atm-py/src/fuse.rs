@@ -129,7 +129,7 @@ fn run(
 
 /// Says what is likely wrong with the log, but for records that can't be used, which are told of with their places.
 pub fn warn_of(py: Python<'_>, advice: &[Diagnosis]) -> PyResult<()> {
-    let told = advice.iter().filter(|found| !matches!(found, Diagnosis::Unusable { .. }));
+    let told = advice.iter().filter(|found| !matches!(found, Diagnosis::Unusable { .. } | Diagnosis::Recording(_)));
     told.into_iter().try_for_each(|found| warn(py, &found.to_string()))
 }
 

@@ -6,7 +6,8 @@ use atm::{
     compare::Name,
     core::{Beam, Kind, MinAngle, RangeResolution, Reflector, Travel},
     storage::LatestSlots,
-    units,
+    track::MotionLimit,
+    units::{self, Scale},
 };
 
 pub fn history(text: &str) -> Result<usize, String> {
@@ -59,6 +60,10 @@ pub fn positive_length(text: &str) -> Result<f64, String> {
 
 pub fn positive_speed(text: &str) -> Result<f64, String> {
     positive(units::speed(text).map_err(words)?, text)
+}
+
+pub fn max_speed(text: &str) -> Result<MotionLimit, String> {
+    MotionLimit::new(positive_speed(text)?).ok_or_else(|| format!("{text} is not positive"))
 }
 
 pub fn positive_rate(text: &str) -> Result<f64, String> {
@@ -121,4 +126,10 @@ pub fn parameter(text: &str) -> Result<(String, String), String> {
 pub fn method(text: &str) -> Result<Name, String> {
     let known = || Name::ALL.map(Name::word).join(", ");
     Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
+}
+
+/// The step in which a log writes lengths: `cm`, `0.25mm`.
+pub fn length_unit(text: &str) -> Result<Scale, String> {
+    let unit = Scale::length(text).map_err(words)?;
+    if unit.apply(1.0) > 0.0 { Ok(unit) } else { Err(format!("{text} is not positive")) }
 }

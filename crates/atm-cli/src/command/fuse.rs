@@ -21,10 +21,17 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     if let Some(directory) = &args.out_dir {
         return fleet::run(args, directory);
     }
-    let [input] = &args.inputs[..] else {
-        return Err(Failure::Usage("several logs are fused into a directory: name it with --out-dir".into()));
+    let [input, parts @ ..] = &args.inputs[..] else {
+        return Err(Failure::Usage("no log is named".into()));
     };
-    let job = job(args, input, args.output.clone())?;
+    if let Some(option) = [(args.passthrough, "--passthrough"), (args.inputs.iter().any(|input| input == "-"), "-")]
+        .into_iter()
+        .find_map(|(given, option)| (given && !parts.is_empty()).then_some(option))
+    {
+        return Err(Failure::Usage(format!("{option}: several recordings can't be read as one like that")));
+    }
+    let mut job = job(args, input, args.output.clone())?;
+    job.log.parts = parts.to_vec();
     let settings = settings(args, &job.log.models()?)?;
     let mut bar = None;
     let mut progress = |bytes, length| {
@@ -125,8 +132,8 @@ fn counted(args: &Fuse, pose_source: Option<&str>, summary: &Summary) -> Vec<Str
         words.push(report::counts(summary));
     }
     words.extend(report::unusable(&summary.dropped));
-    // Records that can't be used are told of above, each with its place.
-    let told = |found: &&Diagnosis| !matches!(found, Diagnosis::Unusable { .. });
+    // Records that can't be used are told of above, each with its place, and what a recording shows in its notes.
+    let told = |found: &&Diagnosis| !matches!(found, Diagnosis::Unusable { .. } | Diagnosis::Recording(_));
     words.extend(summary.advice.iter().filter(told).map(|found| format!("warning: {found}")));
     words
 }

@@ -71,7 +71,7 @@ pub fn run(args: &Info) -> Result<Outcome, Failure> {
 
 fn find<N: SensorNames>(job: &LogJob, input: Input, names: N) -> Result<Findings, Error> {
     let rig = job.rig.as_ref();
-    let format = rig.and_then(|rig| rig.log()).map(|formats| formats.readings.clone()).unwrap_or_default();
+    let format = job.table_format();
     let poses = if job.poses.is_some() { PoseUse::Ignored } else { PoseUse::IfThere };
     let live = input.length.is_none();
     let source = CsvReadings::new(input, &format, poses, job.empty, names)?;
@@ -84,10 +84,10 @@ fn find<N: SensorNames>(job: &LogJob, input: Input, names: N) -> Result<Findings
     let track: Option<&mut AnyTrack> = track.as_mut().map(|(track, _)| track);
     let models = job.sensors()?;
     let (survey, ids) = if live {
-        let mut source = Joined::new(source.joined_midway(), job.max_gap);
+        let mut source = Joined::new(source.joined_midway(), job.max_gap());
         (survey(&mut source, track, &models)?, source.ids().to_vec())
     } else {
-        let mut source = Joined::new(Sorted::new(source), job.max_gap);
+        let mut source = Joined::new(Sorted::new(source), job.max_gap());
         (survey(&mut source, track, &models)?, source.ids().to_vec())
     };
     Ok(Findings {
@@ -117,7 +117,7 @@ fn find_mcap(job: &LogJob, input: Input) -> Result<Findings, Error> {
         ids,
         survey,
         pose_source: second_file.or_else(|| poses_of(&source)),
-        notes: source.notes(),
+        notes: source.clock_words().into_iter().chain(source.notes()).collect(),
         rig: job.rig.clone(),
         command: String::new(),
     })

@@ -282,6 +282,11 @@ def fuse_file(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | str | None = None,
+    tf_topics: Iterable[str] | str | None = None,
+    scan_topics: Iterable[str] | str | None = None,
+    max_speed: float | str | None = None,
+    range_unit: str | None = None,
+    boresight: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
 ) -> dict[str, Any]: ...
 def plan(
     distance: float,
