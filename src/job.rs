@@ -183,7 +183,9 @@ impl LogJob {
             let (format, input) = (self.opens)(path)?.recognize(path)?;
             match format {
                 Format::Csv => Err(Error::Settings {
-                    message: format!("{path} is a table: only recordings can be read as one; with --out-dir each is fused alone"),
+                    message: format!(
+                        "{path} is a table: only recordings can be read as one; with --out-dir each is fused alone"
+                    ),
                 }),
                 _ => Ok((path.clone(), input)),
             }
@@ -430,15 +432,27 @@ impl FuseJob {
         };
         notes.extend(outputs.late());
         let partials = outputs.partials();
-        let nothing = match &log {
-            OpenLog::Mcap(log) if result.is_ok() => nothing_usable(&self.log.input, log, &summary),
+        let nothing = match (&log, result.as_ref().err()) {
+            (OpenLog::Mcap(log), None) => nothing_usable(&self.log.input, log, &summary),
             _ => None,
         };
+        if let (OpenLog::Mcap(_), Some(Error::Format { .. }), true) = (&log, result.as_ref().err(), outputs.is_blank())
+        {
+            outputs.discard()?;
+            let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
+            return Ok(Ended { summary, pose_source, notes, result: result.and(counted), partials: Vec::new() });
+        }
         let result = match nothing {
             Some(error) => {
                 outputs.discard()?;
                 let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
-                return Ok(Ended { summary, pose_source, notes, result: counted.and(Err(error)), partials: Vec::new() });
+                return Ok(Ended {
+                    summary,
+                    pose_source,
+                    notes,
+                    result: counted.and(Err(error)),
+                    partials: Vec::new(),
+                });
             }
             None => result.and_then(|()| outputs.commit()),
         };
@@ -468,7 +482,12 @@ fn nothing_usable(name: &str, log: &McapReadings, summary: &Summary) -> Option<E
     refuse(match worst {
         Some((reason, count, first)) => {
             let of = summary.dropped.total();
-            format!("no reading can be used: {count} of {of} are {}, first at {}: {}", reason.key(), first.place, first.value)
+            format!(
+                "no reading can be used: {count} of {of} are {}, first at {}: {}",
+                reason.key(),
+                first.place,
+                first.value
+            )
         }
         None => "no reading can be used: there are none".to_owned(),
     })

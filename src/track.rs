@@ -3,8 +3,8 @@ mod limits;
 
 use std::{collections::VecDeque, f64::consts::TAU};
 
-pub use self::limits::{GapLimit, MotionLimit, PoseLimits, PoseMiss, Step};
 pub(crate) use self::limits::{Between, Periods, seconds};
+pub use self::limits::{GapLimit, MotionLimit, PoseLimits, PoseMiss, Step};
 use crate::error::{Place, Problem, Reason, Result};
 
 /// Records in a row, earlier than the latest usable one but in order among themselves, that make a clock reset.

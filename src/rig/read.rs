@@ -41,7 +41,8 @@ pub(super) fn rig(text: &str, file: &str) -> Result<Rig> {
     };
     let defaults = ranging(&top, Ranging::default())?;
     // A limit that is given counts even where it excludes nothing.
-    let given = |sensor: Sensor| sensor.with_given_limits(top.get("min_range").is_some(), top.get("max_range").is_some());
+    let given =
+        |sensor: Sensor| sensor.with_given_limits(top.get("min_range").is_some(), top.get("max_range").is_some());
     let all = |sensors: Vec<Sensor>| sensors.into_iter().map(given).collect();
     let rig = match (top.get("ring"), top.get("sensor")) {
         (Some(entry), None) => Rig::new(name, all(ring(&entry.section()?, defaults)?))?,

@@ -161,7 +161,10 @@ impl fmt::Display for Finding {
                     0 => write!(f, "have other values at the same time, {contradicted} times")?,
                     returning => write!(f, "jump to and fro {returning} times, by up to {widest:.2} m")?,
                 }
-                write!(f, ": two sources publish them; leave one out with --tf-topics or --pose-topic, or record it alone")
+                write!(
+                    f,
+                    ": two sources publish them; leave one out with --tf-topics or --pose-topic, or record it alone"
+                )
             }
             Self::BorrowedTransforms { namespaces } => write!(
                 f,

@@ -49,7 +49,9 @@ mod tests {
 
     #[test]
     fn robots_are_known_by_their_numbers() {
-        assert!(are_twins("/robot1", "/robot2") && are_twins("/fleet/r1/x", "/fleet/r2") && are_twins("/robot", "/robot2"));
+        assert!(
+            are_twins("/robot1", "/robot2") && are_twins("/fleet/r1/x", "/fleet/r2") && are_twins("/robot", "/robot2")
+        );
         assert!(!are_twins("/robot1", "/sensors") && !are_twins("/robot1", "/robot1/arm"));
     }
 

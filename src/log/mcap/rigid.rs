@@ -96,7 +96,8 @@ impl Rigid {
 
     /// The way to another, turning the shorter way.
     pub(super) fn step_to(&self, other: &Self) -> Step {
-        let distance = self.translation.iter().zip(other.translation).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+        let distance =
+            self.translation.iter().zip(other.translation).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
         let [mut apart, mut across] = [0.0, 0.0];
         let dot: f64 = self.rotation.iter().zip(other.rotation).map(|(a, b)| a * b).sum();
         let sign = if dot < 0.0 { -1.0 } else { 1.0 };

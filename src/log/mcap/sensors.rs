@@ -152,11 +152,10 @@ impl Sensors {
         let Some(owner) = self.topics.get_mut(usize::from(sensor)) else { return Ok(sensor) };
         match owner {
             Some(owner) if *owner != *topic => {
-                let words =
-                    format!(
-                        "the sensor of frame `{frame}` has its readings under {owner}; a rig with `topic = \"{topic}\"` and a mount \
+                let words = format!(
+                    "the sensor of frame `{frame}` has its readings under {owner}; a rig with `topic = \"{topic}\"` and a mount \
                          makes another sensor of it (--rig), and --range-topics chooses"
-                    );
+                );
                 Err((Reason::SharedFrame, words))
             }
             _ => {
@@ -211,7 +210,8 @@ impl Sensors {
         let kept = self.beams.get(usize::from(sensor)).copied().flatten();
         let beam = match kept.filter(|beam| beam.field_of_view() == angle) {
             Some(beam) => beam,
-            None => Beam::new(angle).map_err(|error| bad(format!("a field_of_view of {angle}: {error}{}", beam_cure(angle))))?,
+            None => Beam::new(angle)
+                .map_err(|error| bad(format!("a field_of_view of {angle}: {error}{}", beam_cure(angle))))?,
         };
         if let Some(kept) = self.beams.get_mut(usize::from(sensor)) {
             *kept = Some(beam);

@@ -165,7 +165,8 @@ impl McapReadings {
             }
             (Item::Restart(file), None) => self.reader.restart(file),
             (Item::Restart(file), Some(_)) => {
-                let message = "--passthrough: there is a second recording in it, and what is copied has to be one".to_owned();
+                let message =
+                    "--passthrough: there is a second recording in it, and what is copied has to be one".to_owned();
                 return Err(Error::Format { place: Place { file, line: 0, byte }, message });
             }
             (Item::Header(profile, library), Some(tap)) => tap.header(profile, library)?,

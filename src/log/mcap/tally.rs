@@ -56,14 +56,10 @@ impl Tally {
     pub(super) fn findings(&self, id: &str) -> impl Iterator<Item = Finding> {
         let id = || id.to_owned();
         let beyond = self.beyond.filter(|_| self.finite >= ENOUGH / 2 && self.far_beyond == self.finite);
-        let beyond =
-            beyond.map(|example| Finding::AllBeyondMaximum { id: id(), readings: self.finite, example });
+        let beyond = beyond.map(|example| Finding::AllBeyondMaximum { id: id(), readings: self.finite, example });
         let close = self.readings >= ENOUGH && self.too_close == self.readings;
-        let close = close.then(|| Finding::AllTooClose {
-            id: id(),
-            readings: self.readings,
-            infinite: self.minus_infinite,
-        });
+        let close =
+            close.then(|| Finding::AllTooClose { id: id(), readings: self.readings, infinite: self.minus_infinite });
         let clamped = self.at_minimum > FEW_CLAMPED && self.at_minimum * CLAMPED_SHARE > self.echoes;
         let clamped = clamped.then(|| Finding::ClampedAtMinimum {
             id: id(),

@@ -348,9 +348,8 @@ impl Tree {
                     None => history.at(t, limits),
                 },
             };
-            let (step, more) = step.map_err(|miss| {
-                Miss::Gap(format!("`{}` in `{}`", self.name(frame), self.name(link.parent)), miss)
-            })?;
+            let (step, more) = step
+                .map_err(|miss| Miss::Gap(format!("`{}` in `{}`", self.name(frame), self.name(link.parent)), miss))?;
             if let Some((within, step)) = more {
                 Step::note(&mut wide, within, step);
             }

@@ -330,7 +330,8 @@ impl Whereabouts {
             near.sort_by_key(|(nearness, _, topic)| (rank(topic).0, rank(topic).1, std::cmp::Reverse(*nearness)));
             if let [(0, _, first), rest @ ..] = &near[..]
                 && let Some((.., twin)) = rest.iter().find(|(_, _, other)| {
-                    other.kind == first.kind && namespace::are_twins(namespace::of(&other.name), namespace::of(&first.name))
+                    other.kind == first.kind
+                        && namespace::are_twins(namespace::of(&other.name), namespace::of(&first.name))
                 })
             {
                 return Err(Lost::refused(format!(

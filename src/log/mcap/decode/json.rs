@@ -17,7 +17,9 @@ pub(super) fn read(kind: Kind, data: &[u8], said: &mut Said, each: &mut dyn FnMu
     let value: Value = match serde_json::from_slice(data) {
         Ok(value) => value,
         // Python writes numbers that are not finite as bare words.
-        Err(error) => serde_json::from_slice(&with_quoted_words(data)).map_err(|_| format!("it is no JSON: {error}"))?,
+        Err(error) => {
+            serde_json::from_slice(&with_quoted_words(data)).map_err(|_| format!("it is no JSON: {error}"))?
+        }
     };
     let mut one = |kind: Kind, value: &Value| {
         said.clear();

@@ -149,8 +149,12 @@ fn unpack(data: &[u8]) -> Result<Vec<u8>, String> {
 
 /// Whether a ROS schema has a list of readings.
 fn lists_ranges(schema: &[u8]) -> bool {
-    const LISTS: [&str; 4] =
-        ["sensor_msgs/Range[", "sensor_msgs/msg/Range[", "sequence<sensor_msgs::msg::Range", "sequence<sensor_msgs/msg/Range"];
+    const LISTS: [&str; 4] = [
+        "sensor_msgs/Range[",
+        "sensor_msgs/msg/Range[",
+        "sequence<sensor_msgs::msg::Range",
+        "sequence<sensor_msgs/msg/Range",
+    ];
     LISTS.iter().any(|list| memchr::memmem::find(schema, list.as_bytes()).is_some())
 }
 

@@ -51,13 +51,7 @@ fn only_between_poses_that_are_near_enough() {
     let step = Step { distance: 30.0, turn: 0.0 };
     let wide = PoseMiss::Gap { between: 30, step };
     assert_eq!(lookup(&tree, "sonar", "odom", 40), Ok(40.5));
-    for (t, miss) in [
-        (-1, PoseMiss::Before(1)),
-        (15, wide),
-        (25, wide),
-        (35, wide),
-        (41, PoseMiss::After(1)),
-    ] {
+    for (t, miss) in [(-1, PoseMiss::Before(1)), (15, wide), (25, wide), (35, wide), (41, PoseMiss::After(1))] {
         assert_eq!(lookup(&tree, "sonar", "odom", t), Err(Miss::Gap("`base` in `odom`".into(), miss)), "{t}");
     }
 }
