@@ -459,14 +459,17 @@ impl FuseJob {
         };
         notes.extend(outputs.late());
         let partials = outputs.partials();
-        let nothing = match &log {
-            OpenLog::Mcap(log) if result.is_ok() => nothing_usable(&self.log.input, log, &summary),
+        let nothing = match (&log, result.as_ref().err()) {
+            (OpenLog::Mcap(log), None) => nothing_usable(&self.log.input, log, &summary),
             _ => None,
         };
-        if let Some(error) = nothing {
+        // A recording of which nothing can be used, or that breaks off before anything could, leaves nothing.
+        let broken = matches!((&log, result.as_ref().err()), (OpenLog::Mcap(_), Some(Error::Format { .. })));
+        if nothing.is_some() || (broken && outputs.is_blank()) {
             outputs.discard()?;
             let counted = counts.map_or(Ok(()), |output| write_counts(output, &summary));
-            return Ok(Ended { summary, pose_source, notes, result: counted.and(Err(error)), partials: Vec::new() });
+            let result = nothing.map_or(result, Err).and(counted);
+            return Ok(Ended { summary, pose_source, notes, result, partials: Vec::new() });
         }
         let skipped = summary.skipped.held + summary.skipped.min_step;
         let useless = summary.readings + skipped == 0 && summary.dropped.total() > 0 && result.is_ok();

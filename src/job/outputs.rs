@@ -185,6 +185,11 @@ impl Outputs {
         self.partials.clone()
     }
 
+    /// Whether nothing of a recording was written.
+    pub(super) const fn is_blank(&self) -> bool {
+        self.waits
+    }
+
     /// Leaves no file: nothing of the log could be used.
     pub(super) fn discard(self) -> Result<()> {
         self.crossings.into_iter().chain(self.echoes).try_for_each(Written::discard)
