@@ -12,7 +12,7 @@ use atm::{
         Input, Next, Row, Source,
         csv::{CsvReadings, PoseUse},
     },
-    pipeline::{Defaults, EchoSink, Emit, SensorModel, Settings, fuse},
+    pipeline::{Defaults, EchoSink, Emit, History, SensorModel, Settings, fuse},
     rig::{Rig, TableFormat},
     track::Pose,
 };
@@ -125,7 +125,8 @@ impl EchoSink for Rows {
 }
 
 fn echoes(readings: &Readings, sensors: &[SensorModel], emit: Emit) -> usize {
-    let settings = Settings { emit, history: 10, bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: true };
+    let settings =
+        Settings { emit, history: History::PAPER, bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: true };
     let mut rows = Rows(Vec::new());
     let mut source = Columns { readings, next: 0 };
     let (_, result) = fuse(&mut source, None, sensors, &settings, &mut rows, &mut |_| {});

@@ -6,6 +6,8 @@ use std::{f64::consts::PI, hint::black_box};
 use atm::{
     core::{Isometry2, Vector2},
     rig::Rig,
+};
+use atm_lab::{
     simulate::{Beam, Effects, Scene, Simulation},
     world::World,
 };

@@ -34,10 +34,10 @@ impl AnyEstimator {
         }
     }
 
-    /// The smallest angle of crossings that count.
-    pub const fn min_angle(&self) -> MinAngle<f64> {
+    /// θmin.
+    pub const fn min_angle(&self) -> &MinAngle<f64> {
         match self {
-            Self::Median(median) => median.min_angle,
+            Self::Median(median) => &median.min_angle,
             Self::Consensus(consensus) => consensus.min_angle(),
         }
     }

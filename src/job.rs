@@ -471,7 +471,7 @@ impl FuseJob {
             let result = nothing.map_or(result, Err).and(counted);
             return Ok(Ended { summary, pose_source, notes, result, partials: Vec::new() });
         }
-        let skipped = summary.skipped.held + summary.skipped.min_step;
+        let skipped = summary.skipped.held + summary.skipped.min_step + summary.duplicates;
         let useless = summary.readings + skipped == 0 && summary.dropped.total() > 0 && result.is_ok();
         let result = result.and_then(|()| if useless { outputs.take_back() } else { outputs.commit() });
         if useless && !partials.is_empty() {

@@ -5,26 +5,19 @@
 
 pub use atm_core as core;
 
-pub mod baseline;
-pub mod compare;
 pub mod diagnose;
-pub mod draw;
 pub mod echo;
 pub mod error;
-pub mod eval;
 pub mod intake;
 pub mod job;
 pub mod log;
-pub mod map;
 pub mod pipeline;
 pub mod rig;
 mod sample;
-pub mod simulate;
 pub mod stamp;
 pub mod storage;
 pub mod summary;
 pub mod survey;
-mod toml_document;
+pub mod toml_document;
 pub mod track;
 pub mod units;
-pub mod world;

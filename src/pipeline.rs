@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use atm_core::{ArcCrossing, Arrival, Bounds, Estimator, Fuser, Held, Kind, Meaning, Reading, Rejected, Sink, Storage};
+use atm_core::{
+    ArcCrossing, Arrival, Bounds, DomainError, Estimator, Fuser, Held, Kind, Meaning, Reading, Rejected, Sink, Span,
+    Storage,
+};
 
 pub use crate::intake::{AnyTrack, Defaults, SensorModel, min_angle_for, readings};
 use crate::{
@@ -27,19 +30,84 @@ pub enum Emit {
     Latest,
 }
 
+/// Which readings the local map holds (Sec. IV-D, length of sonar history).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum History {
+    /// Spaced readings over the travel that crossings of θmin take at a distance: the same at any rate and speed.
+    ByTravel {
+        /// That distance, in metres; `None` for the largest range of the sensors, 100 in at most.
+        reach: Option<f64>,
+        /// The most readings of each sensor, 1 to 10,000.
+        most: usize,
+    },
+    /// The last H readings of every sensor, 1 to 10,000: the paper's rule, for its robot's pace.
+    ByCount(usize),
+}
+
+impl History {
+    /// The paper's, by count (Sec. IV-D).
+    pub const PAPER: Self = Self::ByCount(10);
+    /// The most readings of a sensor that a map by travel holds, where nobody says how many.
+    pub const MOST: usize = 40;
+    /// The longest distance for which the map spans the travel, where nobody says more: 100 in, in metres (Sec. IV-D).
+    pub const MAX_REACH: f64 = 2.54;
+
+    /// The most readings of a sensor in the local map.
+    pub const fn most(&self) -> usize {
+        match self {
+            Self::ByTravel { most, .. } | Self::ByCount(most) => *most,
+        }
+    }
+}
+
+impl Default for History {
+    /// By travel, for the sensors' own range.
+    fn default() -> Self {
+        Self::ByTravel { reach: None, most: Self::MOST }
+    }
+}
+
 /// How to fuse.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings {
     /// When echoes are reported.
     pub emit: Emit,
-    /// H, 1 to 10,000.
-    pub history: usize,
+    /// Which readings the local map holds.
+    pub history: History,
     /// More bounds on the local map.
     pub bounds: Bounds<f64>,
     /// Who says where on its arc an echo came from.
     pub estimator: AnyEstimator,
     /// Whether the first unusable record ends the run.
     pub strict: bool,
+}
+
+impl Settings {
+    /// The travel that the local map spans with sensors of which the largest range is `max_range` (metres, possibly +∞);
+    /// `None` by count.
+    ///
+    /// # Errors
+    /// A reach that is no positive number, or a travel above 1000 m.
+    pub fn span(&self, max_range: f64) -> Result<Option<Span<f64>>, DomainError> {
+        let History::ByTravel { reach, most } = self.history else { return Ok(None) };
+        let reach = reach.unwrap_or_else(|| max_range.min(History::MAX_REACH));
+        let most = u16::try_from(most).unwrap_or(u16::MAX);
+        Span::for_reach(reach, self.estimator.min_angle(), most).map(Some)
+    }
+
+    /// The bounds on the local map, its span with them.
+    ///
+    /// # Errors
+    /// As [`Settings::span`].
+    pub fn bounds(&self, max_range: f64) -> Result<Bounds<f64>, DomainError> {
+        Ok(self.span(max_range)?.map_or(self.bounds, |span| self.bounds.with_span(span)))
+    }
+}
+
+/// The largest range of some sensors, in metres; 100 in without any.
+pub fn largest_range(sensors: &[SensorModel]) -> f64 {
+    let ranges = sensors.iter().map(|sensor| sensor.limits.max());
+    ranges.reduce(f64::max).unwrap_or(History::MAX_REACH)
 }
 
 /// Where the echoes of a log go, and, for those who draw them, what they came from.
@@ -87,7 +155,7 @@ pub fn fuse(
     sink: &mut dyn EchoSink,
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>) {
-    let mut evidence = Evidence::new(Some(settings.estimator.min_angle()));
+    let mut evidence = Evidence::new(Some(*settings.estimator.min_angle()));
     let observed = (&mut evidence, sink);
     let (mut summary, result) = match settings.estimator {
         AnyEstimator::Median(median) => fuse_by(median, source, track, sensors, settings, observed, progress),
@@ -104,8 +172,8 @@ fn advice(evidence: &Evidence, summary: &Summary, settings: &Settings, found: Ve
         arcs: summary.echoes.total() + summary.ignored_pairs + summary.ignored_none,
         pairs: summary.ignored_pairs,
         near: summary.echoes.get(Kind::Near.name()),
-        span: MapSpan::Readings(settings.history),
-        min_angle: settings.estimator.min_angle(),
+        span: summary.map_travel_m.map_or(MapSpan::Readings(settings.history.most()), MapSpan::Travel),
+        min_angle: *settings.estimator.min_angle(),
     };
     let drops_held = settings.bounds.held() != Held::Keep;
     diagnose(evidence, &summary.dropped, summary.clock_resets, drops_held, Some(&run), found)
@@ -124,22 +192,56 @@ where
     E::Echo: Copy + Into<AnyEcho>,
 {
     let mut summary = Summary { echoes: Counts::of(settings.estimator.kinds()), ..Summary::default() };
-    let (bounds, history) = (settings.bounds, settings.history);
-    // Sensors that become known on the way are added then.
-    let count = sensors.len().max(1);
     let result = match settings.emit {
-        Emit::Latest => LatestSlots::new(count, history).map_err(too_large).and_then(|storage| {
-            let observed = Observed { evidence, sensors };
-            let fusing = Fusing::new(Fuser::latest(estimator, bounds, storage), count, observed, sink);
+        Emit::Latest => latest_fuser(estimator, settings, sensors).and_then(|fuser| {
+            let fusing = Fusing::new(fuser, settings, Observed { evidence, sensors }, sink);
             fusing.run(source, track, sensors, settings.strict, &mut summary, progress)
         }),
-        Emit::Settled => SettledSlots::new(count, history).map_err(too_large).and_then(|storage| {
-            let observed = Observed { evidence, sensors };
-            let fusing = Fusing::new(Fuser::settled(estimator, bounds, storage), count, observed, sink);
+        Emit::Settled => settled_fuser(estimator, settings, sensors).and_then(|fuser| {
+            let fusing = Fusing::new(fuser, settings, Observed { evidence, sensors }, sink);
             fusing.run(source, track, sensors, settings.strict, &mut summary, progress)
         }),
     };
     (summary, result)
+}
+
+/// A fuser that reports at arrival, with room for these sensors.
+///
+/// # Errors
+/// A local map that can't be had.
+pub fn latest_fuser<E: Estimator<f64>>(
+    estimator: E,
+    settings: &Settings,
+    sensors: &[SensorModel],
+) -> Result<Fuser<f64, LatestSlots<f64>, E>> {
+    let storage = storage(settings, sensors).map_err(too_large)?;
+    Ok(Fuser::latest(estimator, bounds_for(settings, sensors)?, storage))
+}
+
+/// A fuser that reports when a reading has met all that could cross it, with room for these sensors.
+///
+/// # Errors
+/// A local map that can't be had.
+pub fn settled_fuser<E: Estimator<f64>>(
+    estimator: E,
+    settings: &Settings,
+    sensors: &[SensorModel],
+) -> Result<Fuser<f64, SettledSlots<f64>, E>> {
+    let storage = storage(settings, sensors).map_err(too_large)?;
+    Ok(Fuser::settled(estimator, bounds_for(settings, sensors)?, storage))
+}
+
+fn bounds_for(settings: &Settings, sensors: &[SensorModel]) -> Result<Bounds<f64>> {
+    settings.bounds(largest_range(sensors)).map_err(|error| Error::Settings { message: error.to_string() })
+}
+
+/// Room for these sensors; those that become known on the way are added then.
+fn storage<const B: usize>(settings: &Settings, sensors: &[SensorModel]) -> Result<Slots<f64, B>, StorageError> {
+    let count = sensors.len().max(1);
+    match settings.history {
+        History::ByTravel { most, .. } => Slots::by_travel(count, most),
+        History::ByCount(history) => Slots::new(count, history),
+    }
 }
 
 fn too_large(error: StorageError) -> Error {
@@ -158,6 +260,9 @@ struct Fusing<'a, E, const B: usize> {
     observed: Observed<'a>,
     /// Sensors that the fuser has room for.
     room: usize,
+    settings: &'a Settings,
+    /// The largest range of the sensors so far, in metres; `None` where the map's span does not wait for it.
+    max_range: Option<f64>,
     sink: &'a mut dyn EchoSink,
     wants_crossings: bool,
     crossings: Vec<ArcCrossing<f64>>,
@@ -170,12 +275,28 @@ where
 {
     fn new(
         fuser: Fuser<f64, Slots<f64, B>, E>,
-        room: usize,
+        settings: &'a Settings,
         observed: Observed<'a>,
         sink: &'a mut dyn EchoSink,
     ) -> Self {
         let wants_crossings = sink.wants_crossings();
-        Self { fuser, observed, room, sink, wants_crossings, crossings: Vec::new() }
+        // What a rig says of its sensors is known; what a recording says comes with its readings.
+        let max_range = observed.sensors.is_empty().then_some(0.0);
+        let room = observed.sensors.len().max(1);
+        Self { fuser, observed, room, settings, max_range, sink, wants_crossings, crossings: Vec::new() }
+    }
+
+    /// The local map spans what the farthest of the sensors takes, once that is known.
+    fn reach_farther(&mut self, row: &Row) -> Result<()> {
+        let Some(known) = self.max_range.filter(|known| *known < History::MAX_REACH) else { return Ok(()) };
+        let farthest = row.views.iter().map(|view| view.limits.max()).fold(known, f64::max);
+        if farthest > known {
+            self.max_range = Some(farthest);
+            let span = self.settings.span(farthest);
+            let span = span.map_err(|error| Error::Settings { message: error.to_string() })?;
+            span.into_iter().for_each(|span| self.fuser.set_span(span));
+        }
+        Ok(())
     }
 
     /// Reads to the end, and reports what is in the local map then. A run that fails reports no more: what it has
@@ -193,6 +314,7 @@ where
         if read.is_ok() {
             self.finish(summary)?;
         }
+        summary.map_travel_m = self.fuser.span().map(|span| span.travel());
         self.sink.flush()?;
         read
     }
@@ -237,6 +359,7 @@ where
 
     fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
         self.observed.evidence.record(row, Some(pose), self.observed.sensors);
+        self.reach_farther(row)?;
         self.sink.record(row, pose)
     }
 
@@ -252,6 +375,7 @@ where
                 self.sink.reading(reading)?;
             }
             Ok(Arrival::Held) => summary.skipped.held += 1,
+            Ok(Arrival::Duplicate) => summary.duplicates += 1,
             Ok(_) => summary.skipped.min_step += 1,
             Err(rejected) => summary.dropped.add(refused(row, reading, rejected)),
         }

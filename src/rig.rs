@@ -291,7 +291,7 @@ impl Rig {
     }
 
     /// The same rig, with a beam, in radians within (0, π], for the sensors of which it does not say theirs.
-    pub(crate) fn with_field_of_view(mut self, field_of_view: f64) -> Self {
+    pub fn with_field_of_view(mut self, field_of_view: f64) -> Self {
         for sensor in &mut self.sensors {
             sensor.ranging.field_of_view.get_or_insert(field_of_view);
         }

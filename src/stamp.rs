@@ -14,9 +14,10 @@ const TENS: [u64; 20] = {
 };
 /// Significant digits that are kept: any 19 digits fit 64 bits, and an `i64` has no more than 19.
 const KEPT: u32 = 19;
-/// Nanoseconds in a second, and the decimal shift between the two.
+/// Nanoseconds in a second.
 const SECOND: u64 = 1_000_000_000;
-pub(crate) const SECOND_SHIFT: i32 = 9;
+/// The decimal shift from seconds to nanoseconds.
+pub const SECOND_SHIFT: i32 = 9;
 
 /// Decimal shift from a unit of time to nanoseconds: 9 for `s`, 6 for `ms`, 3 for `us`, 0 for `ns`, else `None`.
 pub fn decimal_shift(unit: &str) -> Option<i32> {

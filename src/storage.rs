@@ -2,14 +2,18 @@
 
 use atm_core::{
     BLOCK, Boxes, Columns, Instructions, LOG_BLOCKS, Ring, SETTLED_BLOCKS, Scalar, SettledStorage, SnapshotStorage,
-    Storage,
+    Storage, Waiting,
 };
 use thiserror::Error;
 
-/// Storage on the heap, `B` · H slots for each sensor, rounded up to whole blocks: grown only where sensors are added.
+/// Storage on the heap, `B` · H slots for each sensor, rounded up to whole blocks: grown only where sensors are added, and
+/// where readings of a map by travel wait for their report.
 #[derive(Debug, Clone)]
-pub struct Slots<T, const B: usize> {
+pub struct Slots<T: Scalar, const B: usize> {
     history: usize,
+    /// How many times H slots each sensor has, and how many times H entries of the log of arrivals.
+    blocks: usize,
+    log_blocks: usize,
     depth: usize,
     instructions: Instructions,
     middle_x: Vec<T>,
@@ -28,6 +32,7 @@ pub struct Slots<T, const B: usize> {
     rings: Vec<Ring<T>>,
     boxes: Vec<Boxes<T>>,
     scratch: Vec<T>,
+    waiting: Vec<Waiting<T>>,
 }
 
 /// Enough for `latest` and snapshots.
@@ -61,15 +66,34 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
     pub const MAX_HISTORY: usize = 10_000;
     /// The largest number of slots: 2²⁵, some 3 GB in `f64`.
     pub const MAX_SLOTS: usize = 1 << 25;
+    /// Readings of each sensor that can wait for their report in a map by travel, on average: one is 112 bytes in `f64`. A
+    /// robot that stands for longer, or that reads more often while it makes its way, has the one that has waited longest
+    /// reported early, from what it has met.
+    pub const MAX_WAITING: usize = 4096;
 
     /// Room for `history` readings of each of `sensors` sensors.
     ///
     /// # Errors
     /// `history` not in 1..=10,000, `sensors` not in 1..=65,535, or more than 2²⁵ slots together.
     pub fn new(sensors: usize, history: usize) -> Result<Self, StorageError> {
+        Self::with_blocks(sensors, history, B, LOG_BLOCKS)
+    }
+
+    /// Room for a map by travel ([`atm_core::Bounds::with_span`]) alone: `history` readings of each of `sensors` sensors, and
+    /// as many that have left it.
+    ///
+    /// # Errors
+    /// As [`Slots::new`].
+    pub fn by_travel(sensors: usize, history: usize) -> Result<Self, StorageError> {
+        Self::with_blocks(sensors, history, B.min(2), 0)
+    }
+
+    fn with_blocks(sensors: usize, history: usize, blocks: usize, log_blocks: usize) -> Result<Self, StorageError> {
         let mut slots = Self {
             history,
-            depth: (history * B).next_multiple_of(BLOCK),
+            blocks,
+            log_blocks,
+            depth: (history * blocks).next_multiple_of(BLOCK),
             instructions: Instructions::widest(),
             middle_x: Vec::new(),
             middle_y: Vec::new(),
@@ -87,6 +111,7 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
             rings: Vec::new(),
             boxes: Vec::new(),
             scratch: Vec::new(),
+            waiting: Vec::new(),
         };
         slots.grow(sensors)?;
         Ok(slots)
@@ -111,7 +136,7 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
         if !(1..=usize::from(u16::MAX)).contains(&sensors) {
             return Err(StorageError::Sensors(sensors));
         }
-        if sensors * history * B > Self::MAX_SLOTS {
+        if sensors * history * self.blocks > Self::MAX_SLOTS {
             return Err(StorageError::TooLarge { sensors, history });
         }
         if sensors <= self.rings.len() {
@@ -134,7 +159,7 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
         for column in [&mut self.travel, &mut self.arrival, &mut self.departure] {
             column.resize(slots, 0);
         }
-        self.log.resize(LOG_BLOCKS * sensors * history, 0);
+        self.log.resize(self.log_blocks * sensors * history, 0);
         self.rings.resize(sensors, Ring::EMPTY);
         self.boxes.resize(slots.div_ceil(BLOCK * BLOCK), Boxes::EMPTY);
         self.scratch.resize(2 * slots, T::ZERO);
@@ -161,6 +186,7 @@ impl<T: Scalar, const B: usize> Slots<T, B> {
             log: &mut self.log,
             rings: &mut self.rings,
             boxes: &mut self.boxes,
+            waiting: &mut self.waiting,
         };
         (columns, &mut self.scratch)
     }
@@ -174,6 +200,14 @@ impl<T: Scalar, const B: usize> Storage<T> for Slots<T, B> {
     #[inline]
     fn columns(&mut self) -> Columns<'_, T> {
         self.split().0
+    }
+
+    fn grow_waiting(&mut self) -> bool {
+        let most = Self::MAX_WAITING * self.rings.len();
+        let room = (self.waiting.len() * 2).clamp(64, most.max(64));
+        let grows = room > self.waiting.len();
+        self.waiting.resize(room, Waiting::NONE);
+        grows
     }
 
     #[inline]

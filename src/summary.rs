@@ -29,6 +29,10 @@ pub struct Summary {
     pub ignored_none: u64,
     /// Usable readings that took no slot.
     pub skipped: Skipped,
+    /// Second readings of a sensor at one time and place, which were not used.
+    pub duplicates: u64,
+    /// The travel that the local map spans, in metres; `None` where it holds a number of readings.
+    pub map_travel_m: Option<f64>,
     /// Unusable records.
     #[serde(serialize_with = "by_reason")]
     pub dropped: Dropped,

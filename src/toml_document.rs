@@ -19,28 +19,31 @@ use crate::{
 
 /// The text of a file, and the file's name.
 #[derive(Clone, Copy)]
-pub(crate) struct Document<'a> {
-    pub(crate) file: &'a str,
-    pub(crate) text: &'a str,
-    pub(crate) kind: &'static Kind,
+pub struct Document<'a> {
+    /// Its name in messages.
+    pub file: &'a str,
+    /// What stands in it.
+    pub text: &'a str,
+    /// What it describes.
+    pub kind: &'static Kind,
 }
 
 /// A kind of file that is written in TOML.
-pub(crate) struct Kind {
+pub struct Kind {
     /// What messages call it: `rig`.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// Those of its kind that need no file.
-    pub(crate) builtin: &'static [&'static str],
+    pub builtin: &'static [&'static str],
     /// An error of such a file: its name, with the line where known, and the message.
-    pub(crate) error: fn(Arc<str>, String) -> Error,
+    pub error: fn(Arc<str>, String) -> Error,
 }
 
 /// Largest file that is read, in bytes.
-pub(crate) const MAX_FILE: u64 = 16 * 1024 * 1024;
+pub const MAX_FILE: u64 = 16 * 1024 * 1024;
 
 impl Kind {
     /// Reads a file of this kind, of bounded size even where the system can't tell it (a pipe, a device).
-    pub(crate) fn read(&self, file: &str) -> Result<String> {
+    pub fn read(&self, file: &str) -> Result<String> {
         let io_error = |source| Error::Io { file: file.into(), source };
         let refuse = |place: String, message: String| Err((self.error)(place.into(), message));
         if Path::new(file).is_dir() {
@@ -72,7 +75,7 @@ impl Kind {
 
 impl<'a> Document<'a> {
     /// Parses the text; an error names the line.
-    pub(crate) fn parse(self) -> Result<DeTable<'a>> {
+    pub fn parse(self) -> Result<DeTable<'a>> {
         match DeTable::parse(self.text) {
             Ok(root) => Ok(root.into_inner()),
             Err(error) => {
@@ -83,7 +86,7 @@ impl<'a> Document<'a> {
     }
 
     /// An error at a byte of the text, or of the file as a whole.
-    pub(crate) fn error(self, byte: Option<usize>, message: String) -> Error {
+    pub fn error(self, byte: Option<usize>, message: String) -> Error {
         let file = match byte {
             Some(byte) => format!("{}:{}", self.file, line_of(self.text.as_bytes(), byte)),
             None => self.file.to_owned(),
@@ -97,14 +100,14 @@ impl<'a> Document<'a> {
 }
 
 /// Line of a byte of a text, from 1.
-pub(crate) fn line_of(text: &[u8], byte: usize) -> usize {
+pub fn line_of(text: &[u8], byte: usize) -> usize {
     let before = text.get(..byte).unwrap_or(text);
     memchr::memchr_iter(b'\n', before).count() + 1
 }
 
 /// One table of the document.
 #[derive(Clone)]
-pub(crate) struct Section<'a> {
+pub struct Section<'a> {
     document: Document<'a>,
     /// Its header as the user writes it; empty for the top level.
     header: String,
@@ -117,12 +120,12 @@ pub(crate) struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// The top level of a document.
-    pub(crate) fn root(document: Document<'a>, table: &'a DeTable<'a>) -> Self {
+    pub fn root(document: Document<'a>, table: &'a DeTable<'a>) -> Self {
         Self { document, header: String::new(), prefix: String::new(), table, start: None }
     }
 
     /// Refuses keys that are not in these lists: the first one in the file is named.
-    pub(crate) fn only(&self, known: &[&[&str]]) -> Result<()> {
+    pub fn only(&self, known: &[&[&str]]) -> Result<()> {
         let known = known.concat();
         let unknown = self.table.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else { return Ok(()) };
@@ -133,18 +136,18 @@ impl<'a> Section<'a> {
     }
 
     /// The value of a key, if it is there.
-    pub(crate) fn get(&self, key: &str) -> Option<Entry<'a>> {
+    pub fn get(&self, key: &str) -> Option<Entry<'a>> {
         let (name, value) = self.table.get_key_value(key)?;
         Some(Entry { document: self.document, key: format!("{}{key}", self.prefix), at: name.span(), value })
     }
 
     /// The value of a key that has to be there.
-    pub(crate) fn require(&self, key: &str) -> Result<Entry<'a>> {
+    pub fn require(&self, key: &str) -> Result<Entry<'a>> {
         self.get(key).ok_or_else(|| self.error(format!("`{key}` is missing")))
     }
 
     /// An error of the section as a whole.
-    pub(crate) fn error(&self, message: String) -> Error {
+    pub fn error(&self, message: String) -> Error {
         let place = if self.header.is_empty() { String::new() } else { format!("{}: ", self.header) };
         self.document.error(self.start, format!("{place}{message}"))
     }
@@ -152,7 +155,7 @@ impl<'a> Section<'a> {
 
 /// One value of the document, with its key.
 #[derive(Clone)]
-pub(crate) struct Entry<'a> {
+pub struct Entry<'a> {
     document: Document<'a>,
     /// Dotted, as messages show it.
     key: String,
@@ -163,7 +166,7 @@ pub(crate) struct Entry<'a> {
 
 impl<'a> Entry<'a> {
     /// An error of this value: what it has to be.
-    pub(crate) fn error(&self, message: &str) -> Error {
+    pub fn error(&self, message: &str) -> Error {
         let is_table = matches!(self.value.get_ref(), DeValue::Table(_));
         let shown = self.document.text.get(self.value.span()).filter(|_| !is_table);
         let shown = shown.map(|text| format!(" = {}", units::shorten(text))).unwrap_or_default();
@@ -172,7 +175,7 @@ impl<'a> Entry<'a> {
     }
 
     /// Line of the key, from 1. Counts from the top of the file: for messages only.
-    pub(crate) fn line(&self) -> usize {
+    pub fn line(&self) -> usize {
         line_of(self.document.text.as_bytes(), self.at.start)
     }
 
@@ -180,14 +183,16 @@ impl<'a> Entry<'a> {
         Err(self.error(&format!("expected {what}, found {}", type_name(self.value.get_ref()))))
     }
 
-    pub(crate) fn text(&self) -> Result<&'a str> {
+    /// The value as text. Errors where it is none.
+    pub fn text(&self) -> Result<&'a str> {
         match self.value.get_ref() {
             DeValue::String(text) => Ok(text),
             _ => self.expected("a string"),
         }
     }
 
-    pub(crate) fn flag(&self) -> Result<bool> {
+    /// The value as true or false. Errors where it is neither.
+    pub fn flag(&self) -> Result<bool> {
         match self.value.get_ref() {
             DeValue::Boolean(flag) => Ok(*flag),
             _ => self.expected("true or false"),
@@ -195,7 +200,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A whole number of at least 0; one that does not fit counts as the largest that does.
-    pub(crate) fn count(&self) -> Result<usize> {
+    pub fn count(&self) -> Result<usize> {
         match self.value.get_ref() {
             DeValue::Integer(_) => {
                 let value = self.number()?;
@@ -207,23 +212,23 @@ impl<'a> Entry<'a> {
     }
 
     /// A finite number.
-    pub(crate) fn number(&self) -> Result<f64> {
+    pub fn number(&self) -> Result<f64> {
         let Some(number) = number(self.value.get_ref()) else { return self.expected("a number") };
         if number.is_finite() { Ok(number) } else { Err(self.error("must be finite")) }
     }
 
     /// A length in metres: a string with a unit, or a number of metres.
-    pub(crate) fn length(&self) -> Result<f64> {
+    pub fn length(&self) -> Result<f64> {
         self.quantity(units::length)
     }
 
     /// An angle in radians: a string with its unit.
-    pub(crate) fn angle(&self) -> Result<f64> {
+    pub fn angle(&self) -> Result<f64> {
         self.quantity(units::angle)
     }
 
     /// What a parser of units makes of a string, or of a bare number as it stands in the file.
-    pub(crate) fn quantity<T>(&self, parse: impl Fn(&str) -> Result<T, UnitError>) -> Result<T> {
+    pub fn quantity<T>(&self, parse: impl Fn(&str) -> Result<T, UnitError>) -> Result<T> {
         let parsed = match self.value.get_ref() {
             DeValue::String(text) => parse(text),
             DeValue::Float(_) | DeValue::Integer(_) => parse(&shortest(self.number()?)),
@@ -233,7 +238,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The table under the key.
-    pub(crate) fn section(&self) -> Result<Section<'a>> {
+    pub fn section(&self) -> Result<Section<'a>> {
         match self.value.get_ref() {
             DeValue::Table(table) => Ok(self.subsection(format!("[{}]", self.key), table, self.at.start)),
             _ => self.expected(&format!("a table ([{}])", self.key)),
@@ -241,7 +246,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The tables of an array of tables, at least one.
-    pub(crate) fn sections(&self) -> Result<Vec<Section<'a>>> {
+    pub fn sections(&self) -> Result<Vec<Section<'a>>> {
         let what = format!("tables, each under [[{}]]", self.key);
         let DeValue::Array(array) = self.value.get_ref() else { return self.expected(&what) };
         if array.is_empty() {
@@ -259,7 +264,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The values of an array of at most `most`.
-    pub(crate) fn items_up_to(&self, most: usize) -> Result<Vec<Entry<'a>>> {
+    pub fn items_up_to(&self, most: usize) -> Result<Vec<Entry<'a>>> {
         match self.value.get_ref() {
             DeValue::Array(array) if array.len() > most => {
                 Err(self.error(&format!("{} values: at most {most}", array.len())))
@@ -269,7 +274,7 @@ impl<'a> Entry<'a> {
     }
 
     /// The values of an array.
-    pub(crate) fn items(&self) -> Result<Vec<Entry<'a>>> {
+    pub fn items(&self) -> Result<Vec<Entry<'a>>> {
         let DeValue::Array(array) = self.value.get_ref() else { return self.expected("an array") };
         let item = |value: &'a Spanned<DeValue<'a>>| Self {
             document: self.document,

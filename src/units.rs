@@ -324,7 +324,7 @@ fn fraction(number: &str) -> Option<(f64, f64)> {
 }
 
 /// A text as a message repeats it: without control characters, and not endless.
-pub(crate) fn shorten(text: &str) -> String {
+pub fn shorten(text: &str) -> String {
     let mut shown: String = text.chars().take(SHOWN).flat_map(escape).collect();
     if text.chars().nth(SHOWN).is_some() {
         shown.push('…');

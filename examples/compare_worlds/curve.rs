@@ -1,8 +1,8 @@
 //! Coverage against cleanliness: what is left of a method when only its surest points are kept.
 
-use atm::{
+use atm::core::Point2;
+use atm_lab::{
     compare::{Name, Outcome},
-    core::Point2,
     eval::{Estimate, Judge},
 };
 

@@ -2,12 +2,10 @@
 
 use std::{collections::BTreeSet, error::Error};
 
-use atm::{
+use atm::{intake::Defaults, log::View, rig::Rig};
+use atm_lab::{
     compare::{Assessment, Name, Options, Outcome, against_world, run, simulated},
     eval::Judge,
-    intake::Defaults,
-    log::View,
-    rig::Rig,
     simulate::{Effects, Simulation},
     world::World,
 };

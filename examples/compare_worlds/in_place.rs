@@ -3,15 +3,16 @@
 use std::error::Error;
 
 use atm::{
-    baseline::interleaved,
-    compare::Name,
     core::{Isometry2, Point2, UnitComplex, Vector2},
-    eval::doorway::Gap,
     intake::Defaults,
     rig::Rig,
-    simulate::{Beam, Effects, Scene},
     track::Pose,
-    world::World,
+};
+use atm_lab::{
+    baseline::interleaved,
+    compare::Name,
+    simulate::{Beam, Effects, Scene},
+    world::{Gap, World},
 };
 
 use crate::{

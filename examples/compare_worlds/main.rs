@@ -16,7 +16,7 @@ mod tests;
 
 use std::error::Error;
 
-use atm::simulate::Effects;
+use atm_lab::simulate::Effects;
 
 use crate::{drive::Driven, table::Table};
 

@@ -2,7 +2,7 @@
 
 use std::{fs, io};
 
-use atm::simulate::Effects;
+use atm_lab::simulate::Effects;
 
 use crate::table::Table;
 

@@ -1,6 +1,6 @@
 //! Tables of one number, methods down and worlds across; and all numbers of one world.
 
-use atm::compare::{Assessment, Name};
+use atm_lab::compare::{Assessment, Name};
 
 use crate::{
     drive::{Driven, SHARED, median},

@@ -12,7 +12,7 @@ use atm::{
         csv::{CsvReadings, Discover, EmptyCell, PoseUse, SensorNames},
         echoes::TableWriter,
     },
-    pipeline::{self, EchoSink, Emit, Settings},
+    pipeline::{self, EchoSink, Emit, History, Settings},
     rig::{Rig, TableFormat},
 };
 
@@ -119,7 +119,7 @@ fn fuse(options: u8, file: &[u8], format: &TableFormat, rig: &Arc<Rig>) {
     let Ok(sensors) = Defaults::default().complete(rig) else { return };
     let emit = if options & 64 == 0 { Emit::Settled } else { Emit::Latest };
     let settings =
-        Settings { emit, history: 2, bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: options & 128 != 0 };
+        Settings { emit, history: History::ByCount(2), bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: options & 128 != 0 };
     let Ok(mut source) = open(options & !0b1100, whole(file), format, Arc::clone(rig)) else { return };
     let ids = rig.sensors().iter().map(|sensor| sensor.id());
     let mut table = Table(TableWriter::echoes(Vec::new(), ids).expect("memory"));

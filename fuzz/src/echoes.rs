@@ -4,10 +4,9 @@ use std::sync::LazyLock;
 
 use atm::{
     error::Problem,
-    eval::evaluate,
     log::{Input, echo_log::EchoLog, echo_table::Estimate},
-    world::World,
 };
+use atm_lab::{eval::evaluate, world::World};
 
 use crate::pieces::{pieces, whole};
 

@@ -13,7 +13,7 @@ use atm::{
         echoes::TableWriter,
         mcap::{McapReadings, Options},
     },
-    pipeline::{self, EchoSink, Emit, Settings},
+    pipeline::{self, EchoSink, Emit, History, Settings},
     rig::Rig,
 };
 
@@ -52,7 +52,7 @@ pub fn check(bytes: &[u8]) {
     let emit = if options & 1 == 0 { Emit::Settled } else { Emit::Latest };
     let settings = Settings {
         emit,
-        history: usize::from(options >> 1 & 7) + 1,
+        history: History::ByCount(usize::from(options >> 1 & 7) + 1),
         bounds: Bounds::NONE
             .with_held([Held::Keep, Held::Drop, Held::Edges, Held::Keep][usize::from(options >> 5 & 3)]),
         estimator: match options & 128 {

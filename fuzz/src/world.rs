@@ -5,6 +5,8 @@ use std::{f64::consts::PI, sync::LazyLock};
 use atm::{
     core::Point2,
     rig::{Ranging, Rig},
+};
+use atm_lab::{
     simulate::{Effects, Simulation},
     world::World,
 };

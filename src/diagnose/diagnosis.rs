@@ -36,6 +36,8 @@ pub enum Unresolved {
         needs: f64,
         /// At which distance.
         reach: f64,
+        /// It holds a number of readings, at whatever rate they come.
+        by_count: bool,
     },
     /// The whole path is shorter than that, in metres.
     ShortPath {
@@ -462,14 +464,18 @@ const fn heading(form: HeadingForm) -> (&'static str, &'static str) {
 /// What a cause of little being resolved adds to the evidence, and its cure.
 fn unresolved(why: &Unresolved, angle: &str) -> (String, Option<String>) {
     match why {
-        Unresolved::ShortMap { spans, needs, reach } => (
+        Unresolved::ShortMap { spans, needs, reach, by_count } => (
             format!(
                 "; the local map spans {} of travel, crossings of {angle} at {} take {}",
                 length(*spans),
                 length(*reach),
                 length(*needs)
             ),
-            Some(format!("--min-step {}", length(needs / 10.0).replace(' ', ""))),
+            Some(if *by_count {
+                "--history auto".into()
+            } else {
+                format!("--reach {}", length(*reach).replace(' ', ""))
+            }),
         ),
         Unresolved::ShortPath { path, needs, reach } => (
             format!(

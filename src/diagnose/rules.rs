@@ -9,6 +9,8 @@ use crate::{error::Reason, summary::Dropped};
 const RESOLVED: f64 = 0.02;
 /// Fewest readings of which anything is said that takes a share of them.
 const FEWEST: u64 = 20;
+/// Fewest arcs of which it is said that hardly any is resolved.
+const FEWEST_ARCS: u64 = 100;
 /// Share from which on nearly all is meant.
 const NEARLY_ALL: f64 = 0.9;
 /// 100 in: as far as the paper looks, in metres.
@@ -236,7 +238,7 @@ fn duplicates(evidence: &Evidence) -> Option<Diagnosis> {
 
 fn little_resolved(evidence: &Evidence, run: &Run) -> Option<Diagnosis> {
     let arcs = run.arcs.saturating_sub(run.near);
-    if arcs < FEWEST || run.resolved as f64 >= RESOLVED * arcs as f64 {
+    if arcs < FEWEST_ARCS || run.resolved as f64 >= RESOLVED * arcs as f64 {
         return None;
     }
     let crossings = &evidence.crossings;
@@ -255,7 +257,8 @@ fn why(evidence: &Evidence, run: &Run, [uncrossed, shallow, of]: [u64; 3]) -> Un
         }
         let spans = map_travel(evidence, run.span);
         if spans < 0.7 * needs {
-            return Unresolved::ShortMap { spans, needs, reach };
+            let by_count = matches!(run.span, MapSpan::Readings(_));
+            return Unresolved::ShortMap { spans, needs, reach, by_count };
         }
     }
     match () {

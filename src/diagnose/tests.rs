@@ -296,12 +296,13 @@ fn unusable_records_are_told_with_their_place_and_cure_the_most_first() {
 fn little_that_is_resolved_is_told_with_what_the_map_spans_and_takes() {
     let drive = Drive::straight();
     let short = drive.diagnoses(Some(&run(7, MapSpan::Readings(4))));
-    let [found @ Diagnosis::LittleResolved { why: Unresolved::ShortMap { spans, needs, reach }, .. }] = &short[..]
+    let [found @ Diagnosis::LittleResolved { why: Unresolved::ShortMap { spans, needs, reach, by_count: true }, .. }] =
+        &short[..]
     else {
         panic!("{short:?}");
     };
     assert!((spans - 0.198).abs() < 1e-9 && (needs - 1.3148).abs() < 1e-4 && *reach == PAPER_REACH);
-    says(found, &["7 of 400 arcs (1.8 %)", "spans 0.198 m", "take 1.31 m", "--min-step"]);
+    says(found, &["7 of 400 arcs (1.8 %)", "spans 0.198 m", "take 1.31 m", "--history auto"]);
     // As much as is needed, or more than 2 %: no word.
     assert_eq!(drive.diagnoses(Some(&run(8, MapSpan::Readings(4)))), []);
     let spans = drive.diagnoses(Some(&run(7, MapSpan::Travel(1.4))));

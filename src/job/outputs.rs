@@ -129,7 +129,7 @@ impl Outputs {
                     contents,
                     consensus: settings.estimator.is_consensus(),
                     frames: Frames { mounts: input.mounts.clone(), ..Frames::default() },
-                    history: settings.history,
+                    history: settings.history.most(),
                     pass_window: input.window.filter(|_| job.passes(contents)),
                 };
                 return Ok(Written::Recording(Box::new(McapSink::new(output, file, options))));

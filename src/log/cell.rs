@@ -15,24 +15,24 @@ const SHOWN: usize = 40;
 
 /// Why a cell, and with it mostly its record, can't be used.
 #[derive(Debug, PartialEq)]
-pub(super) struct Fault {
+pub struct Fault {
     reason: Reason,
     value: String,
 }
 
 impl Fault {
     /// A fault of a whole record.
-    pub(super) fn new(reason: Reason, value: String) -> Self {
+    pub fn new(reason: Reason, value: String) -> Self {
         Self { reason, value }
     }
 
     /// A fault of one cell: its column, and its text.
-    pub(super) fn cell(reason: Reason, column: &str, cell: &[u8]) -> Self {
+    pub fn cell(reason: Reason, column: &str, cell: &[u8]) -> Self {
         Self::new(reason, format!("{column} {}", shorten(cell)))
     }
 
     /// The fault with the place of the table's last record.
-    pub(super) fn at(self, table: &Table) -> Problem {
+    pub fn at(self, table: &Table) -> Problem {
         Problem { reason: self.reason, place: table.place(), value: self.value }
     }
 }
@@ -56,7 +56,7 @@ pub(super) fn shorten(cell: &[u8]) -> String {
 
 /// Reads a number. NaN and ±Inf only where they are spelled: digits that overflow are no number.
 #[inline]
-pub(super) fn number(cell: &[u8]) -> Option<f64> {
+pub fn number(cell: &[u8]) -> Option<f64> {
     if let Some(value) = short_number(cell) {
         return Some(value);
     }
@@ -172,7 +172,7 @@ impl Quantity {
 
 /// Refuses a record that ends before the last of `needed` columns.
 #[inline]
-pub(super) fn check_width(table: &Table, needed: usize) -> Result<Record<'_>, Fault> {
+pub fn check_width(table: &Table, needed: usize) -> Result<Record<'_>, Fault> {
     let record = table.record();
     if record.len() >= needed {
         return Ok(record);

@@ -13,7 +13,7 @@ const LISTED: usize = 24;
 const NAME_SHOWN: usize = 40;
 
 /// The names of a table's columns, from its header or from its format.
-pub(super) struct Columns {
+pub struct Columns {
     names: Vec<String>,
     place: Place,
     /// Commas do not separate cells: they are decimal points.
@@ -22,7 +22,7 @@ pub(super) struct Columns {
 
 impl Columns {
     /// Reads the header, or takes the names the format gives; where it gives names and has a header, the names count.
-    pub(super) fn read(table: &mut Table, format: &TableFormat) -> Result<Self> {
+    pub fn read(table: &mut Table, format: &TableFormat) -> Result<Self> {
         let commented = if format.header && format.columns.is_none() { commented_header(table)? } else { None };
         if let Some(names) = commented {
             return Ok(Self { names, place: table.place(), comma: table.delimiter() != b',' });
@@ -56,7 +56,7 @@ impl Columns {
     }
 
     /// The column of this name. Errors where there are two.
-    pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
+    pub fn find(&self, name: &str) -> Result<Option<usize>> {
         let mut found = self.names.iter().enumerate().filter(|(_, column)| *column == name).map(|(index, _)| index);
         match (found.next(), found.next()) {
             (_, Some(_)) => Err(self.error(&format!("two columns are named `{name}`"))),
@@ -75,7 +75,7 @@ impl Columns {
     }
 
     /// An error about the columns, which it lists.
-    pub(super) fn error(&self, message: &str) -> Error {
+    pub fn error(&self, message: &str) -> Error {
         let listed = list(&self.names);
         // A first line of numbers is a file without a header.
         let numbers = self.names.iter().all(|name| number(name.as_bytes()).is_some());
@@ -105,7 +105,7 @@ fn commented_header(table: &mut Table) -> Result<Option<Vec<String>>> {
 }
 
 /// Names in a row, long ones and many of them cut short.
-pub(super) fn list(names: &[impl AsRef<str>]) -> String {
+pub fn list(names: &[impl AsRef<str>]) -> String {
     let mut listed = Vec::new();
     for name in names.iter().take(LISTED) {
         let name = name.as_ref();

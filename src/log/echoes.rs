@@ -208,7 +208,7 @@ impl<W: Write> TableWriter<W> {
 }
 
 /// A field as CSV wants it (RFC 4180): in quotes where it holds a comma, a quote or a line's end.
-pub(super) fn quoted(field: &str) -> Vec<u8> {
+pub fn quoted(field: &str) -> Vec<u8> {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\"")).into_bytes()
     } else {

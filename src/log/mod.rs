@@ -2,8 +2,8 @@
 pub mod ahead;
 pub mod behind;
 mod buffer;
-mod cell;
-mod columns;
+pub mod cell;
+pub mod columns;
 pub mod content;
 pub mod crossing_log;
 pub mod crossing_table;
@@ -22,7 +22,6 @@ mod record;
 pub mod sorted;
 pub mod table;
 mod times;
-pub mod truth;
 pub mod writer;
 
 use std::{fs, io, sync::Arc};

@@ -1,6 +1,6 @@
 //! A log whose own poses are looked at: those that no robot can have reached are not used.
 
-use std::sync::Arc;
+use std::{collections::VecDeque, sync::Arc};
 
 use super::{Next, Row, Source};
 use crate::{
@@ -15,56 +15,96 @@ type At = (i64, Pose);
 
 /// A log of which records are left out whose pose can't be reached from the one before.
 ///
-/// A later record near a pose that was left out means that the robot is there: it was moved, or its odometry began anew. Records of
-/// one time are not compared, and none of a log that places its readings itself.
+/// Such a record waits for the next pose. A pose near it means that the robot is there: it was moved, or its odometry began anew, and
+/// the record is used. One near the pose before means that it was a mistake. Records of one time are not compared, and none of a log
+/// that places its readings itself.
 pub(crate) struct Plausible<'a> {
     log: &'a mut dyn Source,
     limit: MotionLimit,
     last: Option<At>,
-    suspect: Option<At>,
+    /// Records of one time that can't be reached.
+    suspects: VecDeque<Row>,
+    /// Records that were found to be in order.
+    ready: VecDeque<Row>,
 }
 
 impl<'a> Plausible<'a> {
     pub(crate) fn new(log: &'a mut dyn Source, limit: MotionLimit) -> Self {
-        Self { log, limit, last: None, suspect: None }
-    }
-
-    /// Whether a robot can be there; else how it would have had to move.
-    fn check(&mut self, at: At) -> Result<(), PoseMiss> {
-        let reached = |from: &Option<At>| from.as_ref().is_none_or(|from| self.allows(from, &at));
-        let is_confirmed = || self.suspect.is_some_and(|suspect| suspect.0 < at.0 && self.allows(&suspect, &at));
-        match self.last {
-            Some(last) if !reached(&self.last) && !is_confirmed() => {
-                if self.suspect.is_none_or(|suspect| suspect.0 != at.0) {
-                    self.suspect = Some(at);
-                }
-                Err(PoseMiss::TooFast { step: last.1.step_to(&at.1), within: at.0.abs_diff(last.0) })
-            }
-            _ => {
-                (self.last, self.suspect) = (Some(at), None);
-                Ok(())
-            }
-        }
+        Self { log, limit, last: None, suspects: VecDeque::new(), ready: VecDeque::new() }
     }
 
     /// Whether the robot can go from one pose to the next. What is not later says nothing of how fast it went.
     fn allows(&self, from: &At, to: &At) -> bool {
         to.0 <= from.0 || self.limit.allows(from.1.step_to(&to.1), to.0.abs_diff(from.0))
     }
+
+    /// When and where the suspects are.
+    fn suspect(&self) -> Option<At> {
+        self.suspects.front().and_then(|row| Some((row.t, row.pose?)))
+    }
+
+    /// Leaves the suspects out.
+    fn drop_suspects(&mut self, problems: &mut dyn FnMut(Problem)) {
+        for row in self.suspects.drain(..) {
+            let (Some(last), Some(pose)) = (self.last, row.pose) else { continue };
+            let miss = PoseMiss::TooFast { step: last.1.step_to(&pose), within: row.t.abs_diff(last.0) };
+            let value = format!("t {}: after the pose before it, {miss}", stamp::text(row.t));
+            problems(Problem { reason: Reason::ImpossibleMotion, place: row.place.clone(), value });
+        }
+    }
+
+    /// Decides on a record with a pose, and with it on those that wait; `false` where it has to wait itself.
+    fn admit(&mut self, row: &mut Row, at: At, problems: &mut dyn FnMut(Problem)) -> bool {
+        if self.last.is_none_or(|last| self.allows(&last, &at)) {
+            // Another sensor of the suspects' time says nothing of them.
+            if self.suspect().is_none_or(|suspect| suspect.0 != at.0) {
+                self.drop_suspects(problems);
+            }
+            self.last = Some(at);
+            return true;
+        }
+        match self.suspect() {
+            Some(suspect) if suspect.0 < at.0 && self.allows(&suspect, &at) => {
+                self.ready.append(&mut self.suspects);
+                self.ready.push_back(std::mem::take(row));
+                self.last = Some(at);
+            }
+            Some(suspect) if suspect.0 == at.0 => self.suspects.push_back(std::mem::take(row)),
+            _ => {
+                self.drop_suspects(problems);
+                self.suspects.push_back(std::mem::take(row));
+            }
+        }
+        false
+    }
 }
 
 impl Source for Plausible<'_> {
     fn next_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Next> {
+        if let Some(front) = self.ready.pop_front() {
+            *row = front;
+            return Ok(Next::Record);
+        }
         let next = self.log.next_row(row, problems)?;
+        if next == Next::End {
+            self.drop_suspects(problems);
+        }
         let Some(pose) = row.pose.filter(|_| next == Next::Record && row.views.is_empty()) else { return Ok(next) };
-        let Err(miss) = self.check((row.t, pose)) else { return Ok(next) };
-        let value = format!("t {}: after the pose before it, {miss}", stamp::text(row.t));
-        problems(Problem { reason: Reason::ImpossibleMotion, place: row.place.clone(), value });
-        Ok(Next::Unusable)
+        let at = (row.t, pose);
+        if self.admit(row, at, problems) {
+            return Ok(Next::Record);
+        }
+        match self.ready.pop_front() {
+            Some(front) => {
+                *row = front;
+                Ok(Next::Record)
+            }
+            None => Ok(Next::Unusable),
+        }
     }
 
     fn drained(&self) -> bool {
-        self.log.drained()
+        self.ready.is_empty() && self.log.drained()
     }
 
     fn position(&self) -> u64 {
@@ -140,9 +180,14 @@ mod tests {
     }
 
     #[test]
-    fn of_a_robot_that_was_moved_one_time_is_left_out() {
+    fn of_a_robot_that_was_moved_everything_is_used() {
         let moved = [(0.0, 0.0), (0.1, 9.0), (0.1, 9.0), (0.2, 9.1), (0.3, 9.2)];
-        assert_eq!(used(&moved), [0.0, 9.1, 9.2]);
+        assert_eq!(used(&moved), [0.0, 9.0, 9.0, 9.1, 9.2]);
+    }
+
+    #[test]
+    fn poses_that_jump_to_and_fro_and_one_at_the_end_are_left_out() {
+        assert_eq!(used(&[(0.0, 0.0), (0.1, 9.0), (0.2, 30.0), (0.3, 0.1), (0.4, 41.0)]), [0.0, 0.1]);
     }
 
     #[test]

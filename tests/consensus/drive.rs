@@ -2,10 +2,12 @@
 
 use atm::{
     core::{Beam, Isometry2, Limits, Point2, RangeResolution, Reading, Vector2},
-    log::truth::Cause,
     rig::Rig,
-    simulate::{Effects, Simulation},
     track::Pose,
+};
+use atm_lab::{
+    simulate::{Effects, Simulation},
+    truth::Cause,
     world::World,
 };
 use rand_chacha::{

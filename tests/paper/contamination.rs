@@ -1,6 +1,7 @@
 //! The median holds as long as fewer than half of an arc's crossings are bad (Sec. III-B).
 
-use atm::{core::Kind, log::truth::Cause};
+use atm::core::Kind;
+use atm_lab::truth::Cause;
 
 use super::{
     drive::{Drive, INCH, ring},

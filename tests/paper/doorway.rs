@@ -1,6 +1,7 @@
 //! The opening that cones close and medians open (Secs. II-A and III; Figs. 4 to 6, 13, 14, 16, 17).
 
-use atm::{core::Point2, eval::doorway::Gap, log::echo_table::Estimate};
+use atm::{core::Point2, log::echo_table::Estimate};
+use atm_lab::world::Gap;
 
 use super::{
     drive::{Drive, INCH, interleaved},

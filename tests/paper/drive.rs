@@ -6,15 +6,15 @@ use atm::{
     core::{
         Arc as RangeArc, ArcCrossing, Bounds, Echo, Fuser, Kind, MinAngle, Point2, Reading, Sink, TransversalMedian,
     },
-    eval::Estimate,
-    log::{
-        Row,
-        truth::{Cause, Truth, TruthPoint},
-    },
+    log::Row,
     pipeline::{Defaults, readings},
     rig::{Ranging, Rig},
-    simulate::{Effects, Simulation},
     storage::SettledSlots,
+};
+use atm_lab::{
+    eval::Estimate,
+    simulate::{Effects, Simulation},
+    truth::{Cause, Truth, TruthPoint},
     world::World,
 };
 

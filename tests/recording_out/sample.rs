@@ -12,7 +12,7 @@ use atm::{
         echoes::TableWriter,
         mcap::write::{Frames, McapSink, Options, SENSORS, SchemaKind},
     },
-    pipeline::{self, Defaults, EchoSink, Emit, Settings},
+    pipeline::{self, Defaults, EchoSink, Emit, History, Settings},
     rig::{Rig, TableFormat},
     track::Pose,
 };
@@ -43,7 +43,7 @@ fn fuse_by(estimator: AnyEstimator, table: &str, emit: Emit, sink: &mut dyn Echo
     let sensors = Defaults::default().complete(&rig).expect("the built-in rig is complete");
     let input = Input { reader: Box::new(std::io::Cursor::new(table.to_owned())), name: "log".into(), length: None };
     let mut source = CsvReadings::new(input, &TableFormat::default(), PoseUse::Needed, None, rig)?;
-    let settings = Settings { emit, history: 10, bounds: Bounds::NONE, estimator, strict: true };
+    let settings = Settings { emit, history: History::PAPER, bounds: Bounds::NONE, estimator, strict: true };
     sink.sensors(nomad().ids())?;
     pipeline::fuse(&mut source, None, &sensors, &settings, sink, &mut |_| {}).1
 }

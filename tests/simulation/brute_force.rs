@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use atm::{
+use atm_lab::{
     simulate::{Beam, Scene},
     world::{Material, Shape, World},
 };

@@ -2,7 +2,7 @@
 
 use std::{f64::consts::PI, fmt::Write};
 
-use atm::world::{Material, World};
+use atm_lab::world::{Material, World};
 use nalgebra::Point2;
 use rand_chacha::{
     ChaCha8Rng,

@@ -3,7 +3,7 @@
 mod brute_force;
 mod draw;
 
-use atm::{simulate::Scene, world::Material};
+use atm_lab::{simulate::Scene, world::Material};
 use brute_force::{Place, Second};
 use draw::Draw;
 

@@ -75,9 +75,13 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
         Command::Fuse(args) => command::fuse::run(args),
         Command::Plan(args) => command::plan::run(args),
         Command::Info(args) => command::info::run(args),
+        #[cfg(feature = "lab")]
         Command::Simulate(args) => command::simulate::run(args),
+        #[cfg(feature = "lab")]
         Command::Eval(args) => command::eval::run(args),
+        #[cfg(feature = "lab")]
         Command::Compare(args) => command::compare::run(args),
+        #[cfg(feature = "lab")]
         Command::Draw(args) => command::draw::run(args),
     };
     match result {

@@ -40,7 +40,12 @@ pub fn counts(summary: &Summary) -> String {
         let _ = write!(text, ", {} with none", summary.ignored_none);
     }
     let skipped = &summary.skipped;
-    let skips = [(skipped.held, "held"), (skipped.min_step, "below the smallest step"), (skipped.empty, "empty")];
+    let skips = [
+        (skipped.held, "held"),
+        (skipped.min_step, "below the smallest step"),
+        (skipped.empty, "empty"),
+        (summary.duplicates, "duplicates"),
+    ];
     let skips: Vec<String> =
         skips.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
     if !skips.is_empty() {

@@ -164,7 +164,20 @@ fn a_panning_sensor_is_read_by_the_column_of_its_angle() {
                id = \"servo\"\nx = \"10cm\"\n";
     let one = scratch.file("one.toml", format!("{one}{}angle = \"servo\"\nangle_unit = \"1deg\"\n", columns("servo")));
     let centers = |rig: &str| {
-        let args = ["fuse", &path, "--rig", rig, "--keep", "center", "--min-angle", "90deg", "--history", "1"];
+        let args = [
+            "fuse",
+            &path,
+            "--rig",
+            rig,
+            "--keep",
+            "center",
+            "--min-angle",
+            "90deg",
+            "--history",
+            "1",
+            "--max-speed",
+            "1e9m/s",
+        ];
         let (ran, summary) = with_summary(&args, "");
         assert_eq!(tally(&summary, "/readings"), 2121);
         ran.exits(0).echoes()
@@ -183,8 +196,8 @@ fn a_panning_sensor_is_read_by_the_column_of_its_angle() {
     }
 }
 
-/// A headerless log of one sensor, a line cut at the connection and glued to the next in front of it: x is 41 m.
-const GLUED: &str = "0.1 0.30 1.41 0 0\n0.2 0.31 0.02 0 0\n0.3 0.32 0.03 0 0\n0.4 0.33 0.04 0 0\n";
+/// A headerless log of one sensor, a line cut at the connection and glued to the next in front of it: x is 1 m.
+const GLUED: &str = "0.1 0.30 1.01 0 0\n0.2 0.31 0.12 0 0\n0.3 0.32 0.13 0 0\n0.4 0.33 0.14 0 0\n";
 
 #[test]
 fn the_first_line_of_a_live_source_without_a_header_is_not_trusted() {
@@ -194,7 +207,7 @@ fn the_first_line_of_a_live_source_without_a_header_is_not_trusted() {
         "[log]\ncolumns = ['t', 'a', 'x', 'y', 'yaw']\ndelimiter = ' '\n[[sensor]]\nid = 'a'\nmax_range = '2m'\n",
     );
     let (ran, summary) = with_summary(&["fuse", "-", "--rig", &rig], GLUED);
-    let ran = ran.exits(0).says(&["the first line of a source that runs already", "0.1 0.30 1.41 0 0"]);
+    let ran = ran.exits(0).says(&["the first line of a source that runs already", "0.1 0.30 1.01 0 0"]);
     assert_eq!(tally(&summary, "/readings"), 3);
     assert!(ran.echoes().iter().all(|echo| echo.x < 1.0));
     // A file is no such source, nor is one behind a header.
@@ -265,7 +278,8 @@ fn little_that_is_resolved_is_told_with_numbers_and_a_flag_and_the_status_stays(
     let (ran, summary) =
         with_summary(&["fuse", SAMPLE, "--rig", "nomad200", "--history", "2", "--min-angle", "60deg"], "");
     let advice = advice(&summary);
-    for word in ["hardly anything is resolved", "spans 0.249 m of travel", "60deg at 2.54 m take 2.54 m", "--min-step"]
+    for word in
+        ["hardly anything is resolved", "spans 0.249 m of travel", "60deg at 2.54 m take 2.54 m", "--history auto"]
     {
         assert!(advice.contains(word), "no `{word}` in {advice}");
         assert!(ran.stderr.contains(word), "no `{word}` in {}", ran.stderr);
@@ -302,4 +316,21 @@ fn the_path_the_travel_and_the_command_are_shown_of_any_log() {
     }
     let one = atm_fed(["info", "-"], "t,sensor,range,x,y,yaw\n0,a,1,0,0,0\n").exits(0);
     assert!(one.text().contains("1 sensor\n"), "{}", one.text());
+}
+
+#[test]
+fn readings_that_are_there_twice_count_once() {
+    let (Some(base), Some(twice)) = (case("tables/base.csv"), case("tables/rows_twice.csv")) else { return };
+    let (expected, (found, summary)) = (fuse(&base, "nomad200", &[]).0.exits(0), fuse(&twice, "nomad200", &[]));
+    assert!(places(&found.exits(0)) == places(&expected));
+    assert_eq!((tally(&summary, "/duplicates"), resolved(&summary)), (784, (122, 57)));
+    is_told("rows_twice.csv", &["readings are there twice", "784 of 1568"]);
+    let (Some(one), Some(two), Some(rig)) =
+        (case("tables/one.csv"), case("tables/two.csv"), case("tables/one_two.toml"))
+    else {
+        return;
+    };
+    let (expected, (found, summary)) = (fuse(&one, &rig, &[]).0.exits(0), fuse(&two, &rig, &[]));
+    assert_eq!((tally(&summary, "/duplicates"), tally(&summary, "/echoes/single")), (2, 2));
+    assert!(places(&found.exits(0)) == places(&expected));
 }

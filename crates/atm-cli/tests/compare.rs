@@ -1,4 +1,5 @@
 //! `atm compare`: every method on one log.
+#![cfg(feature = "lab")]
 
 mod support;
 

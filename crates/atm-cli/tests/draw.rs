@@ -1,4 +1,5 @@
 //! `atm draw`: what goes into a picture, and what is said where none can be made.
+#![cfg(feature = "lab")]
 
 mod support;
 

@@ -1,5 +1,6 @@
 //! `atm eval` and `atm draw` of echoes in a recording: the same as of the table of the same run, in either kind of messages, and
 //! what is said of recordings that hold none.
+#![cfg(feature = "lab")]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! `atm eval`: the scores of echo files, and what is said where there are none.
+#![cfg(feature = "lab")]
 
 mod support;
 

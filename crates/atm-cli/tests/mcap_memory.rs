@@ -52,6 +52,7 @@ fn long(times: usize, layout: Layout) -> Vec<u8> {
 }
 
 /// The same with an echo beside each image.
+#[cfg(feature = "lab")]
 fn with_echoes(times: usize, layout: Layout) -> Vec<u8> {
     let mut recording = Recording::default();
     recording.metadata.push(("atm.sensors".to_owned(), [("0".to_owned(), "0".to_owned())].into()));
@@ -127,6 +128,7 @@ fn copying_takes_the_same_memory_for_seven_times_the_recording() {
     peaks_are_equal(&["fuse", "-", "--to", "mcap", "--passthrough"], Layout::Chunks(None));
 }
 
+#[cfg(feature = "lab")]
 #[test]
 fn drawing_takes_the_same_memory_for_seven_times_the_recording() {
     peaks_of(&["draw", "-", "-o", "-"], |times| with_echoes(times, Layout::Chunks(None)));

@@ -1,4 +1,5 @@
 //! The pictures of docs/paper.md and docs/accuracy.md are what the pages' commands draw.
+#![cfg(feature = "lab")]
 
 mod support;
 

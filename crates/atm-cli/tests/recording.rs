@@ -2,6 +2,7 @@
 //!
 //! It is looked for in `$ATM_TEST_DATA`, else in `../shared/data` beside the repository. Without it these tests say so and
 //! pass, except where `CI` is set.
+#![cfg(feature = "lab")]
 
 mod support;
 

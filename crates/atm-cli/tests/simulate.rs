@@ -1,4 +1,5 @@
 //! `atm simulate`: worlds in, logs and truth out.
+#![cfg(feature = "lab")]
 
 mod support;
 

@@ -5,7 +5,8 @@ use core::ops::Range;
 use nalgebra::{Point2, Vector2};
 
 use crate::{
-    arc::Arc,
+    arc::{Arc, dot},
+    estimator::ReportedArc,
     pose::Travel,
     scalar::Scalar,
     sensor::{Beam, RangeResolution},
@@ -21,20 +22,22 @@ pub struct Ring<T> {
     pub(crate) present: u16,
     /// Readings that some arc in the local map has met: those present and, in settled storage, some that left.
     pub(crate) kept: u16,
-    /// Readings since the oldest arc of the local map arrived, that one included.
+    /// Readings since the oldest arc of the local map arrived, that one included. By travel: equal readings in a row.
     pub(crate) since_oldest: u16,
+    /// By travel: the newest reading is replaced by the next one, its sensor having moved too little since the one before.
+    pub(crate) passing: bool,
     /// The last usable reading: metres, NaN for none without echo.
     pub(crate) last: Option<T>,
 }
 
 impl<T> Ring<T> {
     /// A sensor that has not been heard of.
-    pub const EMPTY: Self = Self { newest: 0, present: 0, kept: 0, since_oldest: 0, last: None };
+    pub const EMPTY: Self = Self { newest: 0, present: 0, kept: 0, since_oldest: 0, passing: false, last: None };
 }
 
 /// The columns of a storage, S sensors · D slots long where nothing else is said.
 #[derive(Debug)]
-pub struct Columns<'a, T> {
+pub struct Columns<'a, T: Scalar> {
     /// D: slots of each sensor, one after the other.
     pub depth: usize,
     /// What the pass over the columns may use.
@@ -69,14 +72,30 @@ pub struct Columns<'a, T> {
     pub rings: &'a mut [Ring<T>],
     /// A box for each [`BLOCK`] slots, of which D then has to be a multiple. May be empty: then every arc is tested.
     pub boxes: &'a mut [Boxes<T>],
+    /// Readings that wait for what could still cross them. Empty unless settled.
+    pub waiting: &'a mut [Waiting<T>],
+}
+
+/// A reading of a map by travel that waits for its report.
+#[derive(Debug, Clone, Copy)]
+pub struct Waiting<T: Scalar> {
+    pub(crate) arc: ReportedArc<T>,
+    pub(crate) arrival: u32,
+    pub(crate) travel: Travel,
+}
+
+impl<T: Scalar> Waiting<T> {
+    /// None. An arc of no length crosses nothing.
+    pub const NONE: Self = Self { arc: ReportedArc::NONE, arrival: 0, travel: Travel(0) };
 }
 
 /// One reading as it enters a slot.
 pub(crate) struct Entry<T: Scalar> {
     pub sensor_position: Point2<T>,
     pub arc: Option<Arc<T>>,
-    /// The boresight of a reading that reports nothing as far as it reaches.
-    pub beyond: Option<Vector2<T>>,
+    pub boresight: Vector2<T>,
+    /// Whether it reports nothing as far as it reaches.
+    pub beyond: bool,
     pub t: i64,
     pub travel: Travel,
     pub arrival: u32,
@@ -115,13 +134,13 @@ pub(crate) fn part<'a, V>(column: &'a [V], slots: &Range<usize>) -> &'a [V] {
 impl<T: Scalar> Columns<'_, T> {
     #[inline(always)]
     pub(crate) fn write(&mut self, slot: usize, entry: &Entry<T>) {
-        let (middle, radius, reach) = match (&entry.arc, entry.beyond) {
-            (Some(arc), _) => (arc.middle, arc.radius, arc.reach),
+        let (middle, radius, reach) = match &entry.arc {
+            Some(arc) => (arc.middle, arc.radius, arc.reach),
             // No arc to meet, but a sight: see [`Columns::sight`].
-            (None, Some(boresight)) => {
-                (entry.sensor_position + boresight * entry.beam.quarter_tangent(), T::INFINITY, T::NAN)
+            None => {
+                let middle = entry.sensor_position + entry.boresight * entry.beam.quarter_tangent();
+                (middle, if entry.beyond { T::INFINITY } else { T::NAN }, T::NAN)
             }
-            (None, None) => (entry.sensor_position, T::NAN, T::NAN),
         };
         put(self.middle_x, slot, middle.x);
         put(self.middle_y, slot, middle.y);
@@ -220,6 +239,29 @@ impl<T: Scalar> Columns<'_, T> {
         }
         let length = (axis.x * axis.x + axis.y * axis.y).square_root();
         Some(Sight { sensor, axis, length, tangent: [length, T::ONE], range: radius })
+    }
+
+    /// Whether a sensor at `place` that looks along `boresight` (of unit length) has moved by `step` since the reading in the
+    /// slot, or turned by half its beam.
+    pub(crate) fn has_moved(
+        &self,
+        slot: usize,
+        place: Point2<T>,
+        boresight: Vector2<T>,
+        beam: &Beam<T>,
+        step: T,
+    ) -> bool {
+        let moved = place - self.sensor_position(slot);
+        if moved.x * moved.x + moved.y * moved.y >= step * step {
+            return true;
+        }
+        let axis = Point2::new(get(self.middle_x, slot, T::NAN), get(self.middle_y, slot, T::NAN))
+            - self.sensor_position(slot);
+        // cos(φ/2) by tan(φ/4), without its denominator. The axis' length would cost a root: both sides are squared where
+        // they are positive.
+        let tangent = beam.quarter_tangent() * beam.quarter_tangent();
+        let (across, along) = (T::ONE - tangent, dot(axis, boresight) * (T::ONE + tangent));
+        !(along > T::ZERO) || along * along <= across * across * dot(axis, axis)
     }
 
     pub(crate) fn sensor_position(&self, slot: usize) -> Point2<T> {

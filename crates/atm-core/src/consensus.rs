@@ -55,9 +55,9 @@ impl<T: Scalar> Consensus<T> {
         Self { min_angle, min_confidence: T::NINE_TENTHS, range_error: T::ZERO, window: T::NINE_TENTHS }
     }
 
-    /// The smallest angle of crossings that count.
-    pub const fn min_angle(&self) -> MinAngle<T> {
-        self.min_angle
+    /// θmin, for the resolution that is wanted.
+    pub const fn min_angle(&self) -> &MinAngle<T> {
+        &self.min_angle
     }
 
     /// With another least confidence, in \[0, 1): more of it costs coverage and leaves fewer ghosts.

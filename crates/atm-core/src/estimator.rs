@@ -1,5 +1,7 @@
 //! The arc-transversal median of one arc, and the seam at which another estimator can take its place.
 
+use nalgebra::Point2;
+
 use crate::{
     arc::{Arc, Bearing},
     crossing::{Crossing, MinAngle, crossings},
@@ -124,6 +126,20 @@ impl<T: Scalar> TransversalMedian<T> {
 }
 
 impl<T: Scalar> ReportedArc<T> {
+    /// No arc: nothing crosses it.
+    pub(crate) const NONE: Self = Self {
+        arc: Arc {
+            sensor: Point2::new(T::NAN, T::NAN),
+            middle: Point2::new(T::NAN, T::NAN),
+            radius: T::NAN,
+            reach: T::NAN,
+        },
+        t: 0,
+        sensor: 0,
+        field_of_view: T::ZERO,
+        range_resolution: RangeResolution::STEP,
+    };
+
     /// φ r, the length of the arc, in metres.
     pub fn arc_length(&self) -> T {
         self.field_of_view * self.arc.radius

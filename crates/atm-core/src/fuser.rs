@@ -4,12 +4,12 @@ use nalgebra::{Isometry2, Point2, Vector2};
 
 use crate::{
     arc::{Arc, Bearing},
-    columns::Entry,
+    columns::{Entry, Waiting},
     error::Rejected,
     estimator::{Estimator, ReportedArc, TransversalMedian, Verdict},
-    local_map::{Bounds, Held, LocalMap, Newcomer},
+    local_map::{Bounds, Held, LocalMap, Newcomer, Span},
     partners::{Partners, Scope},
-    pose::{Odometer, usable},
+    pose::{Odometer, Travel, usable},
     scalar::Scalar,
     sensor::{Beam, Meaning, Range, RangeResolution},
     storage::{SettledStorage, SnapshotStorage, Storage},
@@ -34,6 +34,36 @@ pub struct Reading<T: Scalar> {
     pub range_resolution: RangeResolution<T>,
 }
 
+impl<T: Scalar> Reading<T> {
+    /// The arc that it makes, where it is an echo.
+    fn arc(&self) -> Option<ReportedArc<T>> {
+        Some(ReportedArc {
+            arc: Arc::new(&self.pose, self.range.echo()?, &self.beam),
+            t: self.t,
+            sensor: self.sensor,
+            field_of_view: self.beam.field_of_view(),
+            range_resolution: self.range_resolution,
+        })
+    }
+}
+
+impl<T: Scalar> Entry<T> {
+    #[inline]
+    fn new(reading: &Reading<T>, travel: Travel) -> Self {
+        Self {
+            sensor_position: Point2::from(reading.pose.translation.vector),
+            arc: reading.range.echo().map(|radius| Arc::new(&reading.pose, radius, &reading.beam)),
+            boresight: Vector2::new(reading.pose.rotation.re, reading.pose.rotation.im),
+            beyond: reading.range.meaning() == Meaning::Beyond,
+            t: reading.t,
+            travel,
+            arrival: 0,
+            beam: reading.beam,
+            range_resolution: reading.range_resolution,
+        }
+    }
+}
+
 /// What became of a reading that could be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -48,6 +78,8 @@ pub enum Arrival {
     Held,
     /// Skipped: its sensor has moved too little ([`Bounds::with_min_step`]).
     Still,
+    /// Skipped: a second reading of its sensor at one time and place, whose crossings would count twice.
+    Duplicate,
 }
 
 /// A transversal crossing on a reported arc.
@@ -137,58 +169,112 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
     pub fn push(&mut self, reading: &Reading<T>, sink: &mut impl Sink<T, E::Echo>) -> Result<Arrival, Rejected> {
         self.check(reading)?;
         self.latest = Some(reading.t);
-        let travel = self.odometer.advance(reading.robot);
+        if self.map.repeats(reading.sensor, reading.t, Point2::from(reading.pose.translation.vector)) {
+            return Ok(Arrival::Duplicate);
+        }
+        let (least, most) = self.bounds.steps();
+        let travel = self.odometer.advance(reading.robot, least, most);
         let held = self.is_held(reading);
         if let Some(skipped) = self.skip(reading, held) {
             return Ok(skipped);
         }
-        let range = reading.range.echo();
-        let replaces = held && self.bounds.held == Held::Edges && self.map.take_back_held(reading.sensor, range);
-        // The leavers leave first, then the newcomer meets all that remain, then it enters.
+        let ousts = held && self.bounds.held == Held::Edges;
         let newcomer = Newcomer { sensor: reading.sensor, t: reading.t, travel };
-        while let Some(slot) = self.map.next_leaver(&newcomer, &self.bounds) {
+        Ok(match self.bounds.span {
+            None => self.arrive_by_count(reading, &newcomer, ousts, sink),
+            Some(span) => self.arrive_by_travel(reading, &newcomer, &span, ousts, sink),
+        })
+    }
+
+    /// The last H readings of every sensor: the leavers leave first, then the newcomer meets all that remain, then it enters.
+    #[inline]
+    fn arrive_by_count(
+        &mut self,
+        reading: &Reading<T>,
+        newcomer: &Newcomer,
+        ousts: bool,
+        sink: &mut impl Sink<T, E::Echo>,
+    ) -> Arrival {
+        let replaces = ousts && self.map.take_back_held(reading.sensor, reading.range.echo());
+        while let Some(slot) = self.map.next_leaver(newcomer, &self.bounds) {
             self.leave(slot, sink);
         }
-        let arc = range.map(|radius| Arc::new(&reading.pose, radius, &reading.beam));
-        let slot = self.map.enter(
-            reading.sensor,
-            Entry {
-                sensor_position: Point2::from(reading.pose.translation.vector),
-                arc,
-                beyond: (reading.range.meaning() == Meaning::Beyond)
-                    .then(|| Vector2::new(reading.pose.rotation.re, reading.pose.rotation.im)),
-                t: reading.t,
-                travel,
-                arrival: 0,
-                beam: reading.beam,
-                range_resolution: reading.range_resolution,
-            },
-        );
+        let entry = Entry::new(reading, newcomer.travel);
+        let arrival = self.map.arrivals();
+        self.map.enter(reading.sensor, entry);
         if replaces {
-            return Ok(Arrival::Replaced);
+            return Arrival::Replaced;
         }
-        if let (false, Some(arc)) = (self.settled, arc) {
-            let reported = ReportedArc {
-                arc,
-                t: reading.t,
-                sensor: reading.sensor,
-                field_of_view: reading.beam.field_of_view(),
-                range_resolution: reading.range_resolution,
-            };
-            self.report(slot, &reported, Scope::Present, sink);
+        if let (false, Some(arc)) = (self.settled, reading.arc()) {
+            self.report(arrival, &arc, Scope::Present, sink);
         }
-        Ok(Arrival::Entered)
+        Arrival::Entered
+    }
+
+    /// Spaced readings over a travel: whoever has met all that could cross them is reported, the newcomer takes its place
+    /// among its sensor's readings, and waits for its report in turn.
+    #[inline]
+    fn arrive_by_travel(
+        &mut self,
+        reading: &Reading<T>,
+        newcomer: &Newcomer,
+        span: &Span<T>,
+        ousts: bool,
+        sink: &mut impl Sink<T, E::Echo>,
+    ) -> Arrival {
+        let replaces = self.map.count_run(reading.sensor, ousts) >= 2;
+        let entry = Entry::new(reading, newcomer.travel);
+        let at = (entry.sensor_position, entry.boresight);
+        self.map.expire(newcomer, &self.bounds);
+        let place = self.map.place(reading.sensor, at, &reading.beam, span.step, replaces);
+        while let Some(waiting) = self.map.next_due(newcomer, &self.bounds, place) {
+            self.report_waiting(&waiting, sink);
+        }
+        if replaces {
+            self.map.cancel_newest(reading.sensor);
+        }
+        let arrival = self.map.arrivals();
+        self.map.enter_spaced(reading.sensor, place, entry);
+        match reading.arc() {
+            Some(arc) if self.settled => {
+                let early = self.map.wait(Waiting { arc, arrival, travel: newcomer.travel });
+                early.iter().for_each(|waiting| self.report_waiting(waiting, sink));
+            }
+            Some(arc) if !replaces => self.report(arrival, &arc, Scope::Present, sink),
+            _ => {}
+        }
+        if replaces { Arrival::Replaced } else { Arrival::Entered }
     }
 
     /// Ends a log: empties the local map, with the echoes of its readings reported where they are due. What is pushed
     /// next begins anew, at any time and place.
     pub fn finish(&mut self, sink: &mut impl Sink<T, E::Echo>) {
-        while let Some((_, slot)) = self.map.oldest_present() {
-            self.leave(slot, sink);
+        if self.bounds.span.is_some() {
+            while let Some(waiting) = self.map.take_waiting() {
+                self.report_waiting(&waiting, sink);
+            }
+            self.map.clear();
+        } else {
+            while let Some((_, slot)) = self.map.oldest_present() {
+                self.leave(slot, sink);
+            }
+            self.map.forget();
         }
-        self.map.forget();
         self.odometer.lift();
         self.latest = None;
+    }
+
+    /// The travel that the local map spans, where it is not H readings alone.
+    pub const fn span(&self) -> Option<Span<T>> {
+        self.bounds.span
+    }
+
+    /// Lets the local map span another travel from here on, for sensors that become known on the way; nothing where it holds
+    /// H readings.
+    pub const fn set_span(&mut self, span: Span<T>) {
+        if self.bounds.span.is_some() {
+            self.bounds.span = Some(span);
+        }
     }
 
     /// Lets the storage grow: `grow` may add sensors behind those it has, and may not move or lose what it holds.
@@ -252,23 +338,30 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         self.map.depart(slot);
     }
 
+    /// Reports a reading that has waited, unless another one took its place.
+    fn report_waiting(&mut self, waiting: &Waiting<T>, sink: &mut impl Sink<T, E::Echo>) {
+        if waiting.arc.arc.radius < T::INFINITY {
+            self.report(waiting.arrival, &waiting.arc, Scope::Met, sink);
+        }
+    }
+
     fn report_stored(&mut self, slot: usize, scope: Scope, sink: &mut impl Sink<T, E::Echo>) {
         let columns = self.map.storage.columns();
         let at = |column: &[T]| column.get(slot).copied().unwrap_or(T::NAN);
         let (field_of_view, resolution) = (at(columns.field_of_view), at(columns.range_resolution));
         let sensor = slot.checked_div(columns.depth).unwrap_or(0) as u16;
-        let (arc, t) = (columns.arc(slot), columns.time(slot));
+        let (arc, t, arrival) = (columns.arc(slot), columns.time(slot), columns.arrived(slot));
         // A reading without echo has no arc, and nothing to report.
         if let (true, Ok(range_resolution)) = (arc.radius < T::INFINITY, RangeResolution::new(resolution)) {
-            self.report(slot, &ReportedArc { arc, t, sensor, field_of_view, range_resolution }, scope, sink);
+            self.report(arrival, &ReportedArc { arc, t, sensor, field_of_view, range_resolution }, scope, sink);
         }
     }
 
     /// Sec. III: collect the arc's transversal crossings with the arcs it met, take their median, say so.
-    fn report(&mut self, slot: usize, arc: &ReportedArc<T>, scope: Scope, sink: &mut impl Sink<T, E::Echo>) {
+    fn report(&mut self, arrival: u32, arc: &ReportedArc<T>, scope: Scope, sink: &mut impl Sink<T, E::Echo>) {
         let estimator = &self.estimator;
         self.map.storage.with_scratch(|columns, scratch| {
-            let partners = Partners { columns: &columns, slot, scope };
+            let partners = Partners { columns: &columns, arrival, scope };
             let verdict = estimator.estimate(arc, &partners, scratch, |other, crossing| {
                 if sink.wants_crossings() {
                     sink.crossing(&ArcCrossing {
@@ -296,6 +389,14 @@ impl<T: Scalar, S: SnapshotStorage<T>, E: Estimator<T>> Fuser<T, S, E> {
     /// Changes nothing. In either mode.
     pub fn snapshot(&mut self, sink: &mut impl Sink<T, E::Echo>) {
         let scope = if self.settled { Scope::PresentOfKept } else { Scope::Present };
+        if self.bounds.span.is_some() {
+            let mut age = u32::MAX;
+            while let Some((slot, next)) = self.map.next_present(age) {
+                self.report_stored(slot, scope, sink);
+                age = next;
+            }
+            return;
+        }
         for ordinal in 0..self.map.span() {
             if let Some(slot) = self.map.present_at(ordinal) {
                 self.report_stored(slot, scope, sink);

@@ -83,14 +83,14 @@ pub use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 
 pub use crate::{
     arc::{Arc, Bearing},
-    columns::{Columns, Ring},
+    columns::{Columns, Ring, Waiting},
     consensus::{Consensus, ConsensusEcho, Reflector},
     crossing::{Crossing, MinAngle, crossings},
     echo::{Echo, Kind},
     error::{DomainError, Rejected},
     estimator::{Estimator, OnNone, OnTwo, ReportedArc, TransversalMedian, Verdict},
     fuser::{ArcCrossing, Arrival, Fuser, Reading, Sink},
-    local_map::{Bounds, Held},
+    local_map::{Bounds, Held, Span},
     median::median,
     partners::Partners,
     pose::{Anchor, Travel},

@@ -1,14 +1,71 @@
-//! The local map: the most recent H readings of every sensor, and who is in it when (Sec. IV-D, Length of sonar history).
+//! The local map: which readings are partners when (Sec. IV-D, Length of sonar history): by travel, or the last H of every
+//! sensor.
+mod by_travel;
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 
 use crate::{
-    columns::{Columns, Entry},
-    pose::Travel,
+    columns::{Columns, Entry, Ring},
+    error::DomainError,
+    pose::{Odometer, Travel},
     scalar::Scalar,
     storage::Storage,
     sweep::Boxes,
 };
+
+/// The local map by travel: it spans a length of path, and keeps its readings spaced (Sec. IV-D).
+///
+/// What the paper derives is a travel, 2 d sin(θmin/2): so far a robot has to move before arcs on something at distance d
+/// cross at θmin. A reading stays as a partner when its sensor has moved by the spacing, or turned by half its beam, since
+/// the last one of it that stayed; until then the newest one replaces the one before it. So the map holds the same picture
+/// at any rate and speed, nothing piles up while the robot stands, and every reading still gets its echo.
+///
+/// ```
+/// use atm_core::{Bounds, MinAngle, Span};
+/// // Ten readings of each sensor over the 1.31 m that a crossing of 30° at 100 in takes.
+/// let bounds = Bounds::<f64>::NONE.with_span(Span::for_reach(2.54, &MinAngle::PAPER, 10)?);
+/// assert!((bounds.span().unwrap().step() - 0.1315).abs() < 1e-4);
+/// # Ok::<(), atm_core::DomainError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span<T> {
+    pub(crate) travel: Travel,
+    pub(crate) step: T,
+}
+
+impl<T: Scalar> Span<T> {
+    /// A robot that covers more than this share of the span from one reading to the next is sparse with readings: what lies
+    /// between two of them counts as no more of the span, and the map holds the paper's ten (Sec. IV-D) at least.
+    pub const LONGEST_STEP: u16 = 10;
+
+    /// A map of the last `travel` metres of path, in (0, 1000], with a reading of each sensor for every `travel / history`
+    /// of it.
+    ///
+    /// # Errors
+    /// [`DomainError::MaxTravel`].
+    pub fn new(travel: T, history: u16) -> Result<Self, DomainError> {
+        let history = T::from_count(u32::from(history.max(1)));
+        Ok(Self { travel: Travel::from_metres(travel)?, step: travel / history })
+    }
+
+    /// The travel after which arcs on something at `reach` (metres, positive) cross at θmin: 2 reach sin(θmin/2).
+    ///
+    /// # Errors
+    /// [`DomainError::Distance`], [`DomainError::MaxTravel`].
+    pub fn for_reach(reach: T, min_angle: &crate::MinAngle<T>, history: u16) -> Result<Self, DomainError> {
+        Self::new(crate::resolution::travel(reach, min_angle)?, history)
+    }
+
+    /// The path that the map spans, in metres.
+    pub fn travel(&self) -> T {
+        T::from_count(self.travel.0) / T::MICROMETRES
+    }
+
+    /// The spacing, in metres.
+    pub const fn step(&self) -> T {
+        self.step
+    }
+}
 
 /// More bounds on the local map than H, and readings that take no place in it.
 ///
@@ -23,6 +80,7 @@ pub struct Bounds<T> {
     pub(crate) max_travel: Option<Travel>,
     pub(crate) min_step: Option<T>,
     pub(crate) held: Held,
+    pub(crate) span: Option<Span<T>>,
 }
 
 /// What becomes of a reading that is equal to its sensor's previous one, all without echo being equal.
@@ -45,8 +103,8 @@ pub enum Held {
 }
 
 impl<T: Scalar> Bounds<T> {
-    /// H alone.
-    pub const NONE: Self = Self { max_age: None, max_travel: None, min_step: None, held: Held::Keep };
+    /// H alone: the last H readings of every sensor, the paper's rule.
+    pub const NONE: Self = Self { max_age: None, max_travel: None, min_step: None, held: Held::Keep, span: None };
 
     /// A reading leaves at the first arrival that is more than this later, in nanoseconds.
     pub const fn with_max_age(self, nanoseconds: u64) -> Self {
@@ -78,6 +136,33 @@ impl<T: Scalar> Bounds<T> {
     pub const fn held(&self) -> Held {
         self.held
     }
+
+    /// The local map spans a travel, and its readings are spaced; H is the most readings of a sensor that it holds.
+    pub const fn with_span(self, span: Span<T>) -> Self {
+        Self { span: Some(span), ..self }
+    }
+
+    /// The travel that the local map spans, where it is not H readings alone.
+    pub const fn span(&self) -> Option<Span<T>> {
+        self.span
+    }
+
+    /// Between which lengths a step of the robot counts as path.
+    pub(crate) fn steps(&self) -> (T, Travel) {
+        match self.span {
+            Some(span) => (span.step * T::HALF, Travel(span.travel.0 / u32::from(Span::<T>::LONGEST_STEP))),
+            None => (T::ZERO, Odometer::<T>::LONGEST_STEP),
+        }
+    }
+
+    /// The longest path between partners, where there is a bound.
+    fn longest_path(&self) -> Option<Travel> {
+        let span = self.span.map(|span| span.travel);
+        match (span, self.max_travel) {
+            (Some(span), Some(most)) => Some(if span.0 < most.0 { span } else { most }),
+            (span, most) => span.or(most),
+        }
+    }
 }
 
 /// What decides who leaves when a reading arrives.
@@ -101,11 +186,44 @@ pub(crate) struct LocalMap<S> {
     log_head: usize,
     /// The sensor whose departed readings were looked through last.
     turn: usize,
+    /// By travel: no reading of the local map was taken before this time, or this much path.
+    since: (i64, Travel),
+    /// By travel: where the oldest reading that waits for its report is, and how many wait.
+    waiting: (usize, usize),
 }
 
 impl<S> LocalMap<S> {
     pub(crate) const fn new(storage: S, keeps_departed: bool) -> Self {
-        Self { storage, keeps_departed, arrivals: 0, oldest: 0, log_head: 0, turn: 0 }
+        let (since, waiting) = ((0, Travel(0)), (0, 0));
+        Self { storage, keeps_departed, arrivals: 0, oldest: 0, log_head: 0, turn: 0, since, waiting }
+    }
+
+    /// Whether a sensor's newest reading was taken at this time and place: what comes then says nothing new, and each of
+    /// its crossings would count twice.
+    pub(crate) fn repeats<T: Scalar>(&mut self, sensor: u16, t: i64, place: Point2<T>) -> bool
+    where
+        S: Storage<T>,
+    {
+        let columns = self.storage.columns();
+        let Some(ring) = columns.rings.get(usize::from(sensor)) else { return false };
+        let slot = usize::from(sensor) * columns.depth + usize::from(ring.newest);
+        ring.kept > 0 && columns.time(slot) == t && columns.sensor_position(slot) == place
+    }
+
+    /// The number of the next arrival.
+    pub(crate) const fn arrivals(&self) -> u32 {
+        self.arrivals
+    }
+
+    /// Counts a sensor's equal readings in a row, this one included or the first of a new run: 0 for the first.
+    pub(crate) fn count_run<T: Scalar>(&mut self, sensor: u16, goes_on: bool) -> u16
+    where
+        S: Storage<T>,
+    {
+        let columns = self.storage.columns();
+        let Some(ring) = columns.rings.get_mut(usize::from(sensor)) else { return 0 };
+        ring.since_oldest = if goes_on { ring.since_oldest.saturating_add(1) } else { 0 };
+        ring.since_oldest
     }
 
     /// Puts a reading into its sensor's next slot, and says which.
@@ -280,8 +398,7 @@ impl<S> LocalMap<S> {
     {
         let columns = self.storage.columns();
         for ring in columns.rings {
-            ring.kept = 0;
-            ring.last = None;
+            *ring = Ring { newest: ring.newest, ..Ring::EMPTY };
         }
         columns.reach.fill(T::NAN);
         columns.boxes.fill(Boxes::EMPTY);
@@ -334,7 +451,7 @@ pub(crate) fn back(newest: u16, age: u16, depth: usize) -> usize {
 
 /// The sensor of the arrival that lies `back` before the log's head.
 #[inline]
-fn logged<T>(columns: &Columns<'_, T>, head: usize, back: u32) -> Option<u16> {
+fn logged<T: Scalar>(columns: &Columns<'_, T>, head: usize, back: u32) -> Option<u16> {
     let back = back as usize;
     let place = if head >= back { head - back } else { (head + columns.log.len()).checked_sub(back)? };
     columns.log.get(place).copied()

@@ -23,9 +23,10 @@ pub(crate) enum Scope {
 }
 
 /// The arcs that a reported arc may cross.
-pub struct Partners<'a, T> {
+pub struct Partners<'a, T: Scalar> {
     pub(crate) columns: &'a Columns<'a, T>,
-    pub(crate) slot: usize,
+    /// The arrival of the arc's own reading.
+    pub(crate) arrival: u32,
     pub(crate) scope: Scope,
 }
 
@@ -34,9 +35,8 @@ impl<T: Scalar> Partners<'_, T> {
     /// circle touches its own; on a storage with boxes, of these only those whose circle crosses its own steeply enough.
     #[inline(always)]
     pub fn for_each_transversal(&self, arc: &Arc<T>, min_angle: &MinAngle<T>, mut visit: impl FnMut(usize, &Arc<T>)) {
-        let arrival = self.columns.arrived(self.slot);
         let mut candidate = |slot: usize| {
-            if slot != self.slot && self.meets(slot, arrival) {
+            if self.meets(slot) {
                 visit(slot, &self.columns.arc(slot));
             }
         };
@@ -49,24 +49,26 @@ impl<T: Scalar> Partners<'_, T> {
 
     /// Visits the slot of every reading that the arc met, with or without an echo, sensor by sensor.
     pub(crate) fn for_each_reading(&self, mut visit: impl FnMut(usize)) {
-        let arrival = self.columns.arrived(self.slot);
         let depth = self.columns.depth;
         for (sensor, ring) in self.columns.rings.iter().enumerate() {
             let count = if self.scope == Scope::Met { ring.kept } else { ring.present };
             for age in (0..count).rev() {
                 let slot = sensor * depth + back(ring.newest, age, depth);
-                if slot != self.slot && self.meets(slot, arrival) {
+                if self.meets(slot) {
                     visit(slot);
                 }
             }
         }
     }
 
-    fn meets(&self, slot: usize, arrival: u32) -> bool {
+    fn meets(&self, slot: usize) -> bool {
+        if self.columns.arrived(slot) == self.arrival {
+            return false;
+        }
         match self.scope {
             Scope::Present => true,
             Scope::PresentOfKept => self.columns.departed(slot).is_none(),
-            Scope::Met => self.columns.departed(slot).is_none_or(|departure| is_after(departure, arrival)),
+            Scope::Met => self.columns.departed(slot).is_none_or(|departure| is_after(departure, self.arrival)),
         }
     }
 

@@ -36,25 +36,30 @@ pub(crate) struct Odometer<T: Scalar> {
 
 impl<T: Scalar> Odometer<T> {
     /// A step longer than this counts as this much, which is longer than any bound.
-    const LONGEST_STEP: u32 = Travel::MAX.0 + 1;
+    pub(crate) const LONGEST_STEP: Travel = Travel(Travel::MAX.0 + 1);
 
     pub(crate) const fn new() -> Self {
         Self { last: None, fraction: T::ZERO, travel: 0 }
     }
 
-    pub(crate) fn advance(&mut self, position: Point2<T>) -> Travel {
-        if let Some(last) = self.last.replace(position) {
-            let step = position - last;
-            // The sensors of a ring fire together: nothing to add.
-            if step.x == T::ZERO && step.y == T::ZERO {
-                return Travel(self.travel);
-            }
-            let length = (step.x * step.x + step.y * step.y).square_root();
+    /// Takes a position in. A step shorter than `least` (metres) waits for more of it, so that poses that tremble make no
+    /// path; one longer than `most` counts as that.
+    pub(crate) fn advance(&mut self, position: Point2<T>, least: T, most: Travel) -> Travel {
+        let Some(last) = self.last else {
+            self.last = Some(position);
+            return Travel(self.travel);
+        };
+        let step = position - last;
+        let squared = step.x * step.x + step.y * step.y;
+        // The sensors of a ring fire together: nothing to add.
+        if !(squared <= least * least) {
+            self.last = Some(position);
+            let length = squared.square_root();
             let micrometres = length * T::MICROMETRES + self.fraction;
             let whole = micrometres.round_down();
             let fraction = micrometres - whole;
             self.fraction = if fraction >= T::ZERO && fraction < T::ONE { fraction } else { T::ZERO };
-            self.travel = self.travel.wrapping_add(whole.to_count().min(Self::LONGEST_STEP));
+            self.travel = self.travel.wrapping_add(whole.to_count().min(most.0));
         }
         Travel(self.travel)
     }
@@ -155,11 +160,11 @@ mod tests {
     #[test]
     fn odometer_adds_steps_and_keeps_what_is_shorter_than_a_micrometre() {
         let mut odometer = Odometer::<f64>::new();
-        odometer.advance(Point2::new(0.0, 0.0));
+        odometer.advance(Point2::new(0.0, 0.0), 0.0, Odometer::<f64>::LONGEST_STEP);
         for step in 1..=10_000 {
-            odometer.advance(Point2::new(f64::from(step) * 0.3e-6, 0.0));
+            odometer.advance(Point2::new(f64::from(step) * 0.3e-6, 0.0), 0.0, Odometer::<f64>::LONGEST_STEP);
         }
-        let Travel(travel) = odometer.advance(Point2::new(0.003, 4.0));
+        let Travel(travel) = odometer.advance(Point2::new(0.003, 4.0), 0.0, Odometer::<f64>::LONGEST_STEP);
         assert!((4_002_999..=4_003_001).contains(&travel), "{travel}");
     }
 
@@ -167,8 +172,8 @@ mod tests {
     fn leap_of_any_length_counts_as_more_than_any_bound() {
         for leap in [2000.0, 1e300, f64::MAX] {
             let mut odometer = Odometer::<f64>::new();
-            let Travel(before) = odometer.advance(Point2::new(-leap, 0.0));
-            let Travel(after) = odometer.advance(Point2::new(leap, 0.0));
+            let Travel(before) = odometer.advance(Point2::new(-leap, 0.0), 0.0, Odometer::<f64>::LONGEST_STEP);
+            let Travel(after) = odometer.advance(Point2::new(leap, 0.0), 0.0, Odometer::<f64>::LONGEST_STEP);
             assert!(after.wrapping_sub(before) > Travel::MAX.0);
         }
     }

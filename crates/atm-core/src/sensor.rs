@@ -34,6 +34,9 @@ impl<T: Scalar> Beam<T> {
 pub struct RangeResolution<T>(T);
 
 impl<T: Scalar> RangeResolution<T> {
+    /// One metre: a value to fill memory with.
+    pub(crate) const STEP: Self = Self(T::ONE);
+
     /// A step in metres, positive and finite.
     pub fn new(metres: T) -> Result<Self, DomainError> {
         if !(metres > T::ZERO && metres.finite()) {

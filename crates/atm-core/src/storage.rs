@@ -1,7 +1,7 @@
 //! Where the local map lives: arrays of const size on a microcontroller, anything else on a host.
 
 use crate::{
-    columns::{Columns, Ring},
+    columns::{Columns, Ring, Waiting},
     scalar::Scalar,
     sweep::Instructions,
 };
@@ -16,6 +16,11 @@ pub trait Storage<T: Scalar> {
 
     /// The columns.
     fn columns(&mut self) -> Columns<'_, T>;
+
+    /// Makes room for more readings that wait for their report, behind those there are; `false` where it can't.
+    fn grow_waiting(&mut self) -> bool {
+        false
+    }
 
     /// The columns, and room for the crossings on one arc: two for each slot.
     fn with_scratch<R>(&mut self, work: impl FnOnce(Columns<'_, T>, &mut [T]) -> R) -> R;
@@ -109,6 +114,7 @@ impl<T: Scalar, const S: usize, const H: usize> Storage<T> for LatestArrays<T, S
             log: self.log.as_flattened_mut().as_flattened_mut(),
             rings: &mut self.rings,
             boxes: &mut [],
+            waiting: &mut [],
         }
     }
 
@@ -123,9 +129,11 @@ impl<T: Scalar, const S: usize, const H: usize> Storage<T> for LatestArrays<T, S
 /// Const storage for every mode: S sensors, H readings of each, B · H slots a sensor.
 ///
 /// B = 1 serves `latest` and snapshots, B = 5 `settled` as well. 60 bytes a slot in `f32`, 8 more of log for each of the
-/// H · S readings, and 16 a sensor.
+/// H · S readings, and 20 a sensor. In a map by travel ([`crate::Bounds::with_span`]) `settled` needs W as well: so many
+/// readings of each sensor can wait for their report, 64 bytes each in `f32`; where more come within the span, the one that
+/// has waited longest is reported early.
 #[derive(Debug, Clone)]
-pub struct Arrays<T, const S: usize, const H: usize, const B: usize> {
+pub struct Arrays<T: Scalar, const S: usize, const H: usize, const B: usize, const W: usize = 0> {
     middle_x: [[[T; H]; B]; S],
     middle_y: [[[T; H]; B]; S],
     reach: [[[T; H]; B]; S],
@@ -141,9 +149,10 @@ pub struct Arrays<T, const S: usize, const H: usize, const B: usize> {
     scratch: [[[[T; 2]; H]; B]; S],
     log: [[[u16; H]; LOG_BLOCKS]; S],
     rings: [Ring<T>; S],
+    waiting: [[Waiting<T>; W]; S],
 }
 
-impl<T: Scalar, const S: usize, const H: usize, const B: usize> Arrays<T, S, H, B> {
+impl<T: Scalar, const S: usize, const H: usize, const B: usize, const W: usize> Arrays<T, S, H, B, W> {
     const FITS: () = assert!(
         S >= 1 && S <= 65_535 && H >= 1 && H <= 10_000 && (B == 1 || B == SETTLED_BLOCKS),
         "1 to 65,535 sensors, H from 1 to 10,000, B = 1 or 5"
@@ -169,6 +178,7 @@ impl<T: Scalar, const S: usize, const H: usize, const B: usize> Arrays<T, S, H, 
             scratch: [[[[T::ZERO; 2]; H]; B]; S],
             log: [[[0; H]; LOG_BLOCKS]; S],
             rings: [Ring::EMPTY; S],
+            waiting: [[Waiting::NONE; W]; S],
         }
     }
 
@@ -191,18 +201,19 @@ impl<T: Scalar, const S: usize, const H: usize, const B: usize> Arrays<T, S, H, 
             log: self.log.as_flattened_mut().as_flattened_mut(),
             rings: &mut self.rings,
             boxes: &mut [],
+            waiting: self.waiting.as_flattened_mut(),
         };
         (columns, self.scratch.as_flattened_mut().as_flattened_mut().as_flattened_mut())
     }
 }
 
-impl<T: Scalar, const S: usize, const H: usize, const B: usize> Default for Arrays<T, S, H, B> {
+impl<T: Scalar, const S: usize, const H: usize, const B: usize, const W: usize> Default for Arrays<T, S, H, B, W> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T: Scalar, const S: usize, const H: usize, const B: usize> Storage<T> for Arrays<T, S, H, B> {
+impl<T: Scalar, const S: usize, const H: usize, const B: usize, const W: usize> Storage<T> for Arrays<T, S, H, B, W> {
     fn history(&self) -> usize {
         H
     }
@@ -217,5 +228,11 @@ impl<T: Scalar, const S: usize, const H: usize, const B: usize> Storage<T> for A
     }
 }
 
-impl<T: Scalar, const S: usize, const H: usize, const B: usize> SnapshotStorage<T> for Arrays<T, S, H, B> {}
-impl<T: Scalar, const S: usize, const H: usize> SettledStorage<T> for Arrays<T, S, H, SETTLED_BLOCKS> {}
+impl<T: Scalar, const S: usize, const H: usize, const B: usize, const W: usize> SnapshotStorage<T>
+    for Arrays<T, S, H, B, W>
+{
+}
+impl<T: Scalar, const S: usize, const H: usize, const W: usize> SettledStorage<T>
+    for Arrays<T, S, H, SETTLED_BLOCKS, W>
+{
+}

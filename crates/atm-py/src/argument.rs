@@ -68,7 +68,7 @@ pub mod named {
 
     numbers! { x y yaw distance radius first_yaw min_range max_range }
     optional_numbers! {
-        min_angle field_of_view max_age max_travel min_step improvement speed rate range_resolution confidence range_error cell
+        min_angle field_of_view max_age max_travel min_step improvement speed rate range_resolution confidence range_error cell reach
     }
     macro_rules! optional_words {
         ($($name:ident)*) => {$(
@@ -87,7 +87,7 @@ pub mod named {
     }
 
     words! { emit on_none on_two name id schema estimator }
-    optional_words! { empty from_ to topic pose_topic fixed_frame clock held range_unit boresight t_unit }
+    optional_words! { empty from_ to topic pose_topic fixed_frame clock held range_unit boresight t_unit preset }
     flags! { drop_held strict passthrough }
 
     /// Where it has to be given or has a default of its own.

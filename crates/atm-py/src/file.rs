@@ -20,7 +20,7 @@ use crate::{
     argument::{self, named},
     fuse::{warn, warn_of},
     job,
-    options::{self, Choice},
+    options::{self, Choice, LocalMap},
     raise,
     rig::rig as rig_of,
 };
@@ -135,7 +135,7 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// max_message : int, optional
 ///     Recordings: longest message that is read, in bytes. None: 64 MiB.
 /// history, max_age, max_travel, min_step, min_angle, range_resolution, emit, on_none, on_two, keep, drop_held, \
-/// held, estimator, confidence, range_error
+/// held, estimator, confidence, range_error, reach, preset
 ///     As in :func:`fuse`.
 ///
 /// Quantities are SI numbers, or texts with a unit as on the command line: ``min_angle="30deg"``, ``max_travel="5m"``.
@@ -170,13 +170,14 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// >>> counts["readings"], counts["written"]
 /// (2, 2)
 #[pyfunction]
-#[pyo3(signature = (input, *, rig=None, poses=None, output=None, summary=None, crossings=None, max_gap=None, history=10,
+#[pyo3(signature = (input, *, rig=None, poses=None, output=None, summary=None, crossings=None, max_gap=None, history=None,
                     max_age=None, max_travel=None, min_step=None, empty=None, min_angle=None, improvement=None, at=None,
                     range_resolution=None, fov=None, emit="settled", on_none="center", on_two="drop", keep=None,
                     drop_held=false, strict=false, from_=None, to=None, schema="foxglove", passthrough=false,
                     range_topics=None, pose_topic=None, fixed_frame=None,
                     clock=None, reorder=None, max_message=None, progress=None, held=None, estimator="atm", confidence=None,
-                    range_error=None, tf_topics=None, scan_topics=None, max_speed=None, range_unit=None, boresight=None))]
+                    range_error=None, tf_topics=None, scan_topics=None, max_speed=None, range_unit=None, boresight=None,
+                    reach=None, preset=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse_file<'py>(
     py: Python<'py>,
@@ -187,7 +188,7 @@ pub fn fuse_file<'py>(
     summary: Option<&Bound<'py, PyAny>>,
     crossings: Option<&Bound<'py, PyAny>>,
     max_gap: Option<&Bound<'py, PyAny>>,
-    #[pyo3(from_py_with = options::history)] history: usize,
+    #[pyo3(from_py_with = options::history)] history: Option<usize>,
     max_age: Option<&Bound<'py, PyAny>>,
     max_travel: Option<&Bound<'py, PyAny>>,
     min_step: Option<&Bound<'py, PyAny>>,
@@ -223,6 +224,8 @@ pub fn fuse_file<'py>(
     max_speed: Option<&Bound<'py, PyAny>>,
     #[pyo3(from_py_with = named::range_unit)] range_unit: Option<&str>,
     #[pyo3(from_py_with = named::boresight)] boresight: Option<&str>,
+    reach: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if let Some(progress) = progress.filter(|progress| !progress.is_callable()) {
         return Err(raise::kind("progress", format_args!("expected a callable, found {}", argument::shown(progress))));
@@ -297,7 +300,7 @@ pub fn fuse_file<'py>(
     let choice = Choice { estimator, confidence, range_error: length("range_error", range_error)? };
     let settings = Settings {
         emit: options::emit(emit)?,
-        history,
+        history: LocalMap { history, reach: length("reach", reach)?, preset }.history()?,
         bounds: options::bounded(
             Bounds::NONE.with_held(options::held(held, drop_held)?),
             max_age,

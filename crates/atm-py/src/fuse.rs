@@ -16,7 +16,7 @@ use crate::{
     argument::named,
     column::Shape,
     interrupt::Watch,
-    options::{self, Choice, Options},
+    options::{self, Choice, LocalMap, Options},
     raise,
     readings::{Arguments, Given, Readings},
     rig::rig as rig_of,
@@ -154,8 +154,9 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 ///     The ROBOT's pose at each reading in a fixed frame: metres, metres, radians counter-clockwise.
 /// rig : Rig or str or os.PathLike
 ///     The sensors: a :class:`Rig`, a built-in rig's name, or a TOML file.
-/// history : int
-///     H: the local map holds the last H readings of every sensor; 1 to 10000.
+/// history : int, optional
+///     The most readings of each sensor in the local map, 1 to 10000, spaced evenly over the travel that `reach` takes. Alone,
+///     without `reach`: the last so many readings of every sensor, wherever they were taken. None: 40, spaced.
 /// min_angle : float, optional
 ///     Crossings count from this angle on, in radians, in [1, 90] degrees. None: 30 degrees (Sec. IV-B).
 /// range_resolution : float, optional
@@ -187,6 +188,11 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 ///     Least confidence of a point or wall of the consensus, in [0, 1). None: 0.9.
 /// range_error : float, optional
 ///     By how much ranges are wrong beyond their rounding, as a standard deviation in metres, for the consensus. None: 0.
+/// reach : float, optional
+///     The local map spans the travel that crossings of `min_angle` take at this distance, in metres: 2 reach sin(min_angle / 2).
+///     None: the sensors' largest range, at most 2.54 m.
+/// preset : {"paper"}, optional
+///     The last 10 readings of every sensor, for a robot at 5 in/s that reads once a second.
 /// t_unit : {"s", "ms", "us", "ns"}, optional
 ///     The unit of whole numbers in `t`. None: ns, if that makes sense; whole numbers with less than a microsecond from one to the next
 ///     are refused.
@@ -236,10 +242,10 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 /// >>> print(echoes["kind"][4], echoes["x"][4].round(6) + 0.0, echoes["y"][4].round(6))
 /// single 0.0 2.0
 #[pyfunction]
-#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=10, min_angle=None, range_resolution=None,
+#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=None, min_angle=None, range_resolution=None,
                     field_of_view=None, emit="settled", on_none="center", on_two="drop", max_age=None, max_travel=None,
                     min_step=None, drop_held=false, keep=None, sensor_index=None, held=None, estimator="atm",
-                    confidence=None, range_error=None, t_unit=None))]
+                    confidence=None, range_error=None, reach=None, preset=None, t_unit=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse<'py>(
     py: Python<'py>,
@@ -250,7 +256,7 @@ pub fn fuse<'py>(
     y: &Bound<'py, PyAny>,
     yaw: &Bound<'py, PyAny>,
     rig: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = options::history)] history: usize,
+    #[pyo3(from_py_with = options::history)] history: Option<usize>,
     #[pyo3(from_py_with = named::min_angle)] min_angle: Option<f64>,
     #[pyo3(from_py_with = named::range_resolution)] range_resolution: Option<f64>,
     #[pyo3(from_py_with = named::field_of_view)] field_of_view: Option<f64>,
@@ -267,11 +273,13 @@ pub fn fuse<'py>(
     #[pyo3(from_py_with = named::estimator)] estimator: &str,
     #[pyo3(from_py_with = named::confidence)] confidence: Option<f64>,
     #[pyo3(from_py_with = named::range_error)] range_error: Option<f64>,
+    #[pyo3(from_py_with = named::reach)] reach: Option<f64>,
+    #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
     #[pyo3(from_py_with = named::t_unit)] t_unit: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index, t_unit };
     let options = Options {
-        history,
+        map: LocalMap { history, reach, preset },
         min_angle,
         range_resolution,
         field_of_view,
@@ -327,9 +335,9 @@ pub fn fuse<'py>(
 /// >>> len(found), float(found["y"][0].round(6))
 /// (2, 2.0)
 #[pyfunction]
-#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=10, min_angle=None, range_resolution=None,
+#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=None, min_angle=None, range_resolution=None,
                     field_of_view=None, emit="settled", on_none="center", on_two="drop", max_age=None, max_travel=None,
-                    min_step=None, drop_held=false, sensor_index=None, t_unit=None))]
+                    min_step=None, drop_held=false, sensor_index=None, reach=None, preset=None, t_unit=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn crossings<'py>(
     py: Python<'py>,
@@ -340,7 +348,7 @@ pub fn crossings<'py>(
     y: &Bound<'py, PyAny>,
     yaw: &Bound<'py, PyAny>,
     rig: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = options::history)] history: usize,
+    #[pyo3(from_py_with = options::history)] history: Option<usize>,
     #[pyo3(from_py_with = named::min_angle)] min_angle: Option<f64>,
     #[pyo3(from_py_with = named::range_resolution)] range_resolution: Option<f64>,
     #[pyo3(from_py_with = named::field_of_view)] field_of_view: Option<f64>,
@@ -352,11 +360,13 @@ pub fn crossings<'py>(
     #[pyo3(from_py_with = named::min_step)] min_step: Option<f64>,
     #[pyo3(from_py_with = named::drop_held)] drop_held: bool,
     sensor_index: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = named::reach)] reach: Option<f64>,
+    #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
     #[pyo3(from_py_with = named::t_unit)] t_unit: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index, t_unit };
     let options = Options {
-        history,
+        map: LocalMap { history, reach, preset },
         min_angle,
         range_resolution,
         field_of_view,

@@ -6,7 +6,7 @@ use atm::{
     core::{Consensus, Fuser, Rejected, Sink},
     echo::{AnyEcho, AnyEstimator},
     log::Row,
-    pipeline::{self, Emit, SensorModel},
+    pipeline::{self, Emit, SensorModel, latest_fuser, settled_fuser},
     rig::Rig,
     storage::{LatestSlots, SettledSlots},
 };
@@ -17,7 +17,7 @@ use crate::{
     column::Shape,
     echo::PyEcho,
     interrupt::Watch,
-    options::{self, Choice, Options},
+    options::{self, Choice, LocalMap, Options},
     raise,
     readings::{Arguments, Given, Readings},
     rig::rig as rig_of,
@@ -114,7 +114,7 @@ impl State {
 /// rig : Rig or str or os.PathLike
 ///     The sensors: a :class:`Rig`, a built-in rig's name, or a TOML file.
 /// history, min_angle, range_resolution, field_of_view, emit, on_none, on_two, max_age, max_travel, min_step, drop_held, \
-/// held, estimator, confidence, range_error
+/// held, estimator, confidence, range_error, reach, preset
 ///     As in :func:`fuse`.
 ///
 /// Raises
@@ -130,7 +130,7 @@ impl State {
 /// Examples
 /// --------
 /// >>> import atm
-/// >>> fuser = atm.Fuser(atm.Rig.builtin("nomad200"), history=10)
+/// >>> fuser = atm.Fuser(atm.Rig.builtin("nomad200"), history=None)
 /// >>> fuser.push(0.0, "3", 1.5, 0.0, 0.0, 0.0)
 /// []
 /// >>> [echo.kind for echo in fuser.finish()]
@@ -183,13 +183,13 @@ impl PyFuser {
 #[pymethods]
 impl PyFuser {
     #[new]
-    #[pyo3(signature = (rig, history=10, *, min_angle=None, range_resolution=None, field_of_view=None, emit="settled",
+    #[pyo3(signature = (rig, history=None, *, min_angle=None, range_resolution=None, field_of_view=None, emit="settled",
                         on_none="center", on_two="drop", max_age=None, max_travel=None, min_step=None, drop_held=false,
-                        held=None, estimator="atm", confidence=None, range_error=None))]
+                        held=None, estimator="atm", confidence=None, range_error=None, reach=None, preset=None))]
     #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
     fn new(
         rig: &Bound<'_, PyAny>,
-        #[pyo3(from_py_with = options::history)] history: usize,
+        #[pyo3(from_py_with = options::history)] history: Option<usize>,
         #[pyo3(from_py_with = named::min_angle)] min_angle: Option<f64>,
         #[pyo3(from_py_with = named::range_resolution)] range_resolution: Option<f64>,
         #[pyo3(from_py_with = named::field_of_view)] field_of_view: Option<f64>,
@@ -204,10 +204,12 @@ impl PyFuser {
         #[pyo3(from_py_with = named::estimator)] estimator: &str,
         #[pyo3(from_py_with = named::confidence)] confidence: Option<f64>,
         #[pyo3(from_py_with = named::range_error)] range_error: Option<f64>,
+        #[pyo3(from_py_with = named::reach)] reach: Option<f64>,
+        #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
     ) -> PyResult<Self> {
         let rig = rig_of(rig)?;
         let options = Options {
-            history,
+            map: LocalMap { history, reach, preset },
             min_angle,
             range_resolution,
             field_of_view,
@@ -222,20 +224,19 @@ impl PyFuser {
             choice: Choice { estimator, confidence, range_error },
         };
         let (settings, sensors) = (options.settings()?, options::models(&rig, &options.defaults()?)?);
-        let too_large = |error| raise::value("history", error);
-        let (bounds, count) = (settings.bounds, sensors.len());
-        let latest = || LatestSlots::new(count, history).map_err(too_large);
-        let settled = || SettledSlots::new(count, history).map_err(too_large);
+        let too_large = |error: atm::error::Error| raise::value("history", error);
         let engine = match (settings.emit, settings.estimator) {
-            (Emit::Latest, AnyEstimator::Median(median)) => Engine::Latest(Fuser::latest(median, bounds, latest()?)),
+            (Emit::Latest, AnyEstimator::Median(median)) => {
+                Engine::Latest(latest_fuser(median, &settings, &sensors).map_err(too_large)?)
+            }
             (Emit::Settled, AnyEstimator::Median(median)) => {
-                Engine::Settled(Fuser::settled(median, bounds, settled()?))
+                Engine::Settled(settled_fuser(median, &settings, &sensors).map_err(too_large)?)
             }
             (Emit::Latest, AnyEstimator::Consensus(consensus)) => {
-                Engine::LatestConsensus(Fuser::latest(consensus, bounds, latest()?))
+                Engine::LatestConsensus(latest_fuser(consensus, &settings, &sensors).map_err(too_large)?)
             }
             (Emit::Settled, AnyEstimator::Consensus(consensus)) => {
-                Engine::SettledConsensus(Fuser::settled(consensus, bounds, settled()?))
+                Engine::SettledConsensus(settled_fuser(consensus, &settings, &sensors).map_err(too_large)?)
             }
         };
         let state = State { engine, latest: None, clock: None, row: Row::default() };

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use atm::{
+use atm::{core::Point2, error::Error, pipeline::Defaults};
+use atm_lab::{
     compare::{Assessment, Name, Options as Chosen, Recording, as_json, assess, run},
-    core::Point2,
-    error::Error,
     eval::{Estimate, evaluate as scores},
-    log::truth::{Cause, Truth, TruthPoint},
-    pipeline::Defaults,
+    truth::{Cause, Truth, TruthPoint},
 };
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyDict};
 use serde_json::Value;
@@ -18,7 +16,8 @@ use crate::{
     column::{Held, HeldTimes, Shape, numbers, times},
     fuse::ArraySource,
     interrupt::Watch,
-    options, raise,
+    options::{self, LocalMap},
+    raise,
     readings::{Arguments, Given},
     rig::rig as rig_of,
     simulate::world as world_of,
@@ -206,7 +205,7 @@ pub fn evaluate<'py>(
 ///
 /// Parameters
 /// ----------
-/// t, sensor, range_, x, y, yaw, rig, history, min_angle, range_resolution, field_of_view, drop_held, range_error, sensor_index
+/// t, sensor, range_, x, y, yaw, rig, history, min_angle, range_resolution, field_of_view, drop_held, range_error, sensor_index, reach, preset
 ///     As in :func:`fuse`.
 /// world : str or os.PathLike, optional
 ///     Where the points should lie: a built-in world or a TOML file. None: the methods are compared with one another.
@@ -243,9 +242,9 @@ pub fn evaluate<'py>(
 /// >>> said["atm-median-single"]["azimuth_error_m"]["p50"] < said["centerline"]["azimuth_error_m"]["p50"] / 5
 /// True
 #[pyfunction]
-#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, world=None, truth=None, set=None, methods=None, history=10,
+#[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, world=None, truth=None, set=None, methods=None, history=None,
                     min_angle=None, range_resolution=None, field_of_view=None, drop_held=false, range_error=None,
-                    cell=None, sensor_index=None))]
+                    cell=None, sensor_index=None, reach=None, preset=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn compare<'py>(
     py: Python<'py>,
@@ -260,7 +259,7 @@ pub fn compare<'py>(
     truth: Option<&Bound<'py, PyAny>>,
     set: Option<&Bound<'py, PyDict>>,
     methods: Option<&Bound<'py, PyAny>>,
-    #[pyo3(from_py_with = options::history)] history: usize,
+    #[pyo3(from_py_with = options::history)] history: Option<usize>,
     #[pyo3(from_py_with = named::min_angle)] min_angle: Option<f64>,
     #[pyo3(from_py_with = named::range_resolution)] range_resolution: Option<f64>,
     #[pyo3(from_py_with = named::field_of_view)] field_of_view: Option<f64>,
@@ -268,6 +267,8 @@ pub fn compare<'py>(
     #[pyo3(from_py_with = named::range_error)] range_error: Option<f64>,
     #[pyo3(from_py_with = named::cell)] cell: Option<f64>,
     sensor_index: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = named::reach)] reach: Option<f64>,
+    #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let names = methods_of(methods)?;
     let world = world.map(|world| world_of(world, set)).transpose()?;
@@ -282,7 +283,7 @@ pub fn compare<'py>(
         value => Ok(value),
     };
     let chosen = Chosen {
-        history,
+        history: LocalMap { history, reach, preset }.history()?,
         min_angle: options::min_angle(min_angle)?,
         range_error: positive("range_error", range_error, 0.0)?.unwrap_or(0.0),
         cell: positive("cell", cell, f64::MIN_POSITIVE)?,

@@ -3,7 +3,7 @@
 use atm::{
     core::{Beam, Bounds, Consensus, Held, MinAngle, OnNone, OnTwo, RangeResolution, TransversalMedian, Travel},
     echo::AnyEstimator,
-    pipeline::{Defaults, Emit, SensorModel, Settings},
+    pipeline::{Defaults, Emit, History, SensorModel, Settings},
     rig::Rig,
     storage::LatestSlots,
 };
@@ -13,7 +13,7 @@ use crate::{argument, raise, time};
 
 /// The options that `fuse`, `crossings` and `Fuser` share.
 pub struct Options<'a> {
-    pub history: usize,
+    pub map: LocalMap<'a>,
     pub min_angle: Option<f64>,
     pub range_resolution: Option<f64>,
     pub field_of_view: Option<f64>,
@@ -26,6 +26,34 @@ pub struct Options<'a> {
     pub drop_held: bool,
     pub held: Option<&'a str>,
     pub choice: Choice<'a>,
+}
+
+/// Which readings the local map holds, as Python says it; `None` for what the library chooses.
+#[derive(Clone, Copy)]
+pub struct LocalMap<'a> {
+    pub history: Option<usize>,
+    pub reach: Option<f64>,
+    pub preset: Option<&'a str>,
+}
+
+impl LocalMap<'_> {
+    /// The rule.
+    pub fn history(&self) -> PyResult<History> {
+        if let Some(preset) = self.preset {
+            let paper = argument::choice("preset", preset, &[("paper", History::PAPER)])?;
+            return match (self.history, self.reach) {
+                (None, None) => Ok(paper),
+                _ => Err(raise::value("preset", "goes without history and reach")),
+            };
+        }
+        if let Some(reach) = self.reach.filter(|reach| !(*reach > 0.0 && reach.is_finite())) {
+            return Err(raise::value("reach", format_args!("{} m is no positive length", argument::float(reach))));
+        }
+        Ok(match (self.reach, self.history) {
+            (None, Some(count)) => History::ByCount(count),
+            (reach, most) => History::ByTravel { reach, most: most.unwrap_or(History::MOST) },
+        })
+    }
 }
 
 /// The estimator, and what only the consensus asks for.
@@ -77,7 +105,7 @@ impl Options<'_> {
     pub fn settings(&self) -> PyResult<Settings> {
         Ok(Settings {
             emit: emit(self.emit)?,
-            history: self.history,
+            history: self.map.history()?,
             bounds: self.bounds()?,
             estimator: self.choice.estimator(TransversalMedian {
                 min_angle: min_angle(self.min_angle)?,
@@ -149,14 +177,17 @@ pub fn max_age(argument: &str, seconds: f64) -> PyResult<u64> {
     nanoseconds.ok_or_else(|| raise::value(argument, format_args!("{seconds} s is no time above zero")))
 }
 
-/// H.
-pub fn history(value: &Bound<'_, PyAny>) -> PyResult<usize> {
+/// A number of readings; `None` and "auto" are as many as serve.
+pub fn history(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    if value.is_none() || value.extract::<String>().is_ok_and(|word| word == "auto") {
+        return Ok(None);
+    }
     let most = LatestSlots::<f64>::MAX_HISTORY;
     let history = argument::whole("history", value)?;
     if (1..=most).contains(&history) {
-        return Ok(history);
+        return Ok(Some(history));
     }
-    Err(raise::value("history", format_args!("{value} is no whole number from 1 to {most}")))
+    Err(raise::value("history", format_args!("{value} is not in 1..={most}")))
 }
 
 /// When echoes are reported.

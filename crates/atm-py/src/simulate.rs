@@ -1,9 +1,7 @@
 //! `atm.simulate`: drives through worlds, as arrays.
 
-use atm::{
-    core::Beam,
-    pipeline::Defaults,
-    rig::Rig,
+use atm::{core::Beam, pipeline::Defaults, rig::Rig};
+use atm_lab::{
     simulate::{Effects, Simulation},
     world::World,
 };

@@ -6,10 +6,12 @@ use atm::{
     core::ArcCrossing,
     echo::{AnyEcho, AnyEstimator},
     error::Result,
-    log::truth::{Cause, TruthPoint},
     pipeline::EchoSink,
     rig::Rig,
+};
+use atm_lab::{
     simulate::Sweep,
+    truth::{Cause, TruthPoint},
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;

@@ -2,10 +2,9 @@
 
 use std::f64::consts::PI;
 
-use atm::{
-    error::Result,
+use atm::{error::Result, units::inches};
+use atm_lab::{
     simulate::{Beam, Scene},
-    units::inches,
     world::World,
 };
 use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};

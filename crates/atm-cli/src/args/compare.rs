@@ -1,12 +1,11 @@
-use atm::{
-    compare::Name,
-    core::{MinAngle, RangeResolution},
-};
+use atm::core::{MinAngle, RangeResolution};
+use atm_lab::compare::Name;
 use clap::Args;
 
 use super::{
+    local_map::LocalMapArgs,
     log::{Format, LogArgs},
-    values::{error_length, history, method, min_angle, parameter, positive_length, range_resolution},
+    values::{error_length, min_angle, parameter, positive_length, range_resolution},
 };
 
 #[derive(Debug, Args)]
@@ -47,9 +46,8 @@ pub struct Compare {
     pub from: Option<Format>,
     #[command(flatten)]
     pub log: LogArgs,
-    /// H of the local map of atm and consensus
-    #[arg(long, value_name = "N", default_value = "10", value_parser = history)]
-    pub history: usize,
+    #[command(flatten)]
+    pub local_map: LocalMapArgs,
     /// Crossings count from this angle on in atm [default: 30deg]
     #[arg(long, value_name = "A", value_parser = min_angle)]
     pub min_angle: Option<MinAngle<f64>>,
@@ -65,4 +63,9 @@ pub struct Compare {
     /// No progress
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+fn method(text: &str) -> Result<Name, String> {
+    let known = || Name::ALL.map(Name::word).join(", ");
+    Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
 }

@@ -1,4 +1,5 @@
-use atm::{core::Point2, draw::Frame, stamp, units};
+use atm::{core::Point2, stamp, units};
+use atm_lab::draw::Frame;
 use clap::Args;
 
 use super::log::LogArgs;
@@ -73,7 +74,7 @@ fn zoom(text: &str) -> Result<Frame, String> {
 }
 
 fn size(text: &str) -> Result<(f64, Option<f64>), String> {
-    let (low, high) = atm::draw::SIDES;
+    let (low, high) = atm_lab::draw::SIDES;
     let side = |text: &str| match text.trim().parse::<u32>().map(f64::from) {
         Ok(side) if (low..=high).contains(&side) => Ok(side),
         _ => Err(format!("{text} is no number of pixels from {low} to {high}")),

@@ -8,9 +8,10 @@ use atm::{
 use clap::{Args, ValueEnum};
 
 use super::{
+    local_map::LocalMapArgs,
     log::{Format, LogArgs},
     values::{
-        confidence, error_length, history, kind, min_angle, positive_duration, positive_length, positive_number,
+        confidence, error_length, kind, min_angle, positive_duration, positive_length, positive_number,
         range_resolution, travel,
     },
 };
@@ -51,9 +52,8 @@ pub struct Fuse {
     pub passthrough: bool,
     #[command(flatten)]
     pub log: LogArgs,
-    /// H: the local map holds the last H readings of every sensor
-    #[arg(long, value_name = "N", default_value = "10", value_parser = history)]
-    pub history: usize,
+    #[command(flatten)]
+    pub local_map: LocalMapArgs,
     /// A reading leaves the local map after this time
     #[arg(long, value_name = "T", value_parser = positive_duration)]
     pub max_age: Option<u64>,

@@ -1,25 +1,33 @@
 //! What can stand on the command line, one file a command.
 
+#[cfg(feature = "lab")]
 mod compare;
+#[cfg(feature = "lab")]
 mod draw;
+#[cfg(feature = "lab")]
 mod eval;
 mod fuse;
 mod info;
+mod local_map;
 mod log;
 mod plan;
+#[cfg(feature = "lab")]
 mod simulate;
 mod values;
 
 use clap::{Parser, Subcommand};
 
+#[cfg(feature = "lab")]
 pub use self::{
     compare::Compare,
     draw::{Draw, PanelSpec},
     eval::Eval,
+    simulate::Simulate,
+};
+pub use self::{
     fuse::{Emit, Fuse, NoneOption, TwoOption},
     info::Info,
     plan::Plan,
-    simulate::Simulate,
 };
 
 /// Sharp echo points from wide-beam range sensors on a moving robot: the arc-transversal median.
@@ -45,11 +53,15 @@ pub enum Command {
     /// What is in a log
     Info(Info),
     /// Drive a robot through a world and write its log
+    #[cfg(feature = "lab")]
     Simulate(Simulate),
     /// How good echoes are, where the world is known: errors, coverage, ghosts, the doorway
+    #[cfg(feature = "lab")]
     Eval(Eval),
     /// Every method on one log, side by side
+    #[cfg(feature = "lab")]
     Compare(Box<Compare>),
     /// Draw walls, path, arcs, crossings and echoes
+    #[cfg(feature = "lab")]
     Draw(Box<Draw>),
 }

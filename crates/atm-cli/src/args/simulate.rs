@@ -1,4 +1,5 @@
-use atm::{core::Beam, simulate::Effects};
+use atm::core::Beam;
+use atm_lab::simulate::Effects;
 use clap::Args;
 
 use super::{

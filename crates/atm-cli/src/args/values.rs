@@ -2,19 +2,21 @@
 
 use std::{fmt::Display, str::FromStr};
 
+use super::local_map::HistoryOption;
 use atm::{
-    compare::Name,
     core::{Beam, Kind, MinAngle, RangeResolution, Reflector, Travel},
     storage::LatestSlots,
     track::MotionLimit,
     units::{self, Scale},
 };
 
-pub fn history(text: &str) -> Result<usize, String> {
+/// A number of readings, or `auto`.
+pub fn history(text: &str) -> Result<HistoryOption, String> {
     let most = LatestSlots::<f64>::MAX_HISTORY;
     match text.parse() {
-        Ok(history) if (1..=most).contains(&history) => Ok(history),
-        _ => Err(format!("{text} is no whole number from 1 to {most}")),
+        _ if text == "auto" => Ok(HistoryOption::Auto),
+        Ok(history) if (1..=most).contains(&history) => Ok(HistoryOption::Most(history)),
+        _ => Err(format!("{text} is neither auto nor in 1..={most}")),
     }
 }
 
@@ -116,16 +118,12 @@ pub fn bytes(text: &str) -> Result<u64, String> {
 }
 
 /// `KEY=VALUE`, as it stands: what keys there are depends on the world.
+#[cfg(feature = "lab")]
 pub fn parameter(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err(format!("{text} is not KEY=VALUE, like opening=36in")),
     }
-}
-
-pub fn method(text: &str) -> Result<Name, String> {
-    let known = || Name::ALL.map(Name::word).join(", ");
-    Name::from_word(text).ok_or_else(|| format!("{text} is none of {}", known()))
 }
 
 /// The step in which a log writes lengths: `cm`, `0.25mm`.

@@ -3,10 +3,10 @@
 mod files;
 mod table;
 
-use atm::{
+use atm::core::MinAngle;
+use atm_lab::{
     compare::{Assessment, Name, Options, Outcome as Said, Recording, as_json, assess, run as run_method},
-    core::MinAngle,
-    log::truth::Truth,
+    truth::Truth,
     world::World,
 };
 
@@ -19,7 +19,7 @@ pub fn run(args: &Compare) -> Result<Outcome, Failure> {
     let truth = args.truth.as_deref().map(Truth::read).transpose()?;
     let recording = record(args)?;
     let options = Options {
-        history: args.history,
+        history: args.local_map.history(),
         min_angle: args.min_angle.unwrap_or(MinAngle::PAPER),
         range_error: args.range_error,
         cell: args.cell,

@@ -4,11 +4,6 @@ use std::{collections::BTreeSet, io::Write, sync::Arc};
 
 use atm::{
     core::{Kind, Reflector},
-    draw::{
-        Panel, Picture, Scene,
-        drive::{Key, drive},
-        tables,
-    },
     log::{
         Input,
         content::Content,
@@ -19,6 +14,13 @@ use atm::{
         output::{Output, overwrites},
     },
     summary::Dropped,
+};
+use atm_lab::{
+    draw::{
+        Panel, Picture, Scene,
+        drive::{Key, drive},
+        tables,
+    },
     world::World,
 };
 

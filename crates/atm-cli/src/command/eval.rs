@@ -2,9 +2,12 @@
 
 use atm::{
     core::{Kind, Reflector},
-    eval::{Judge, Metrics, Scores, Spread, evaluate, views},
-    log::{View, echo_log::EchoLog, truth::Truth},
+    log::{View, echo_log::EchoLog},
     summary::Dropped,
+};
+use atm_lab::{
+    eval::{Judge, Metrics, Scores, Spread, evaluate, views},
+    truth::Truth,
     world::World,
 };
 

@@ -46,9 +46,6 @@ struct Travel {
     spans: f64,
 }
 
-/// H of the paper, which is the default.
-const HISTORY: usize = 10;
-
 /// Runs the command.
 pub fn run(args: &Info) -> Result<Outcome, Failure> {
     let job = args.log.job(&args.input, args.from, None)?;
@@ -182,7 +179,8 @@ fn travel(findings: &Findings) -> Option<Travel> {
     evidence.poses.bounds?;
     let reach = evidence.reach().map_or(PAPER_REACH, |reach| reach.min(PAPER_REACH));
     let needs = resolution::travel(reach, &MinAngle::PAPER).ok()?;
-    Some(Travel { needs, reach, spans: map_travel(evidence, MapSpan::Readings(HISTORY)) })
+    // By default it spans what is needed.
+    Some(Travel { needs, reach, spans: map_travel(evidence, MapSpan::Travel(needs)) })
 }
 
 fn as_json(findings: &Findings) -> String {

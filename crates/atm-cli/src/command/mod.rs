@@ -1,11 +1,15 @@
 //! One file a command, each a thin adapter over the library.
 
+#[cfg(feature = "lab")]
 pub mod compare;
+#[cfg(feature = "lab")]
 pub mod draw;
+#[cfg(feature = "lab")]
 pub mod eval;
 pub mod fuse;
 pub mod info;
 pub mod plan;
+#[cfg(feature = "lab")]
 pub mod simulate;
 
 use atm::error::Error;

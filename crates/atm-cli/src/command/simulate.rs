@@ -8,11 +8,13 @@ use atm::{
         format::Format as Found,
         mcap::write::RecordingWriter,
         output::{Output, overwrites, same_file},
-        truth::TruthWriter,
         writer::{CsvLog, LogWriter},
     },
     rig::Rig,
+};
+use atm_lab::{
     simulate::{Simulation, Sweep},
+    truth::TruthWriter,
     world::World,
 };
 

@@ -159,7 +159,7 @@ class Fuser:
     def __new__(
         cls,
         rig: Rig | _Path,
-        history: int = 10,
+        history: int | Literal["auto"] | None = None,
         *,
         min_angle: float | None = None,
         range_resolution: float | None = None,
@@ -175,6 +175,8 @@ class Fuser:
         estimator: _Estimator = "atm",
         confidence: float | None = None,
         range_error: float | None = None,
+        reach: float | None = None,
+        preset: Literal["paper"] | None = None,
     ) -> Fuser: ...
     def push(
         self,
@@ -200,7 +202,7 @@ def fuse(
     yaw: ArrayLike,
     *,
     rig: Rig | _Path,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -218,6 +220,8 @@ def fuse(
     confidence: float | None = None,
     range_error: float | None = None,
     t_unit: _TimeUnit | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
 def crossings(
     t: ArrayLike,
@@ -228,7 +232,7 @@ def crossings(
     yaw: ArrayLike,
     *,
     rig: Rig | _Path,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -241,6 +245,8 @@ def crossings(
     drop_held: bool = False,
     sensor_index: ArrayLike | None = None,
     t_unit: _TimeUnit | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
 def fuse_file(
     input: _Path,
@@ -251,7 +257,7 @@ def fuse_file(
     summary: _Path | None = None,
     crossings: _Path | None = None,
     max_gap: float | str | None = None,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     max_age: float | str | None = None,
     max_travel: float | str | None = None,
     min_step: float | str | None = None,
@@ -287,6 +293,8 @@ def fuse_file(
     max_speed: float | str | None = None,
     range_unit: str | None = None,
     boresight: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
+    reach: float | str | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> dict[str, Any]: ...
 def plan(
     distance: float,
@@ -327,7 +335,7 @@ def compare(
     truth: _Table | None = None,
     set: dict[str, str | float] | None = None,
     methods: Iterable[str] | str | None = None,
-    history: int = 10,
+    history: int | Literal["auto"] | None = None,
     min_angle: float | None = None,
     range_resolution: float | None = None,
     field_of_view: float | None = None,
@@ -335,6 +343,8 @@ def compare(
     range_error: float | None = None,
     cell: float | None = None,
     sensor_index: ArrayLike | None = None,
+    reach: float | None = None,
+    preset: Literal["paper"] | None = None,
 ) -> dict[str, dict[str, Any]]: ...
 def _main(argv: Sequence[str]) -> int: ...
 def _restore_rig(

@@ -2,11 +2,10 @@
 
 use std::{fs, io::Write, path::Path};
 
-use atm::{
+use atm::{error::Error, log::output::Output};
+use atm_lab::{
     compare::{Outcome as Said, Recording, scene},
     draw::{Frame, Panel, Picture},
-    error::Error,
-    log::output::Output,
     world::World,
 };
 

@@ -1,6 +1,6 @@
 //! The comparison for a person.
 
-use atm::{
+use atm_lab::{
     compare::{Assessment, Name, Recording},
     eval::Metrics,
 };
