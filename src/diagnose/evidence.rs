@@ -53,40 +53,42 @@ impl Evidence {
         if let Some(pose) = pose {
             self.poses.add(pose, t);
         }
-        let changes = self.poses.changes;
-        for (number, &(sensor, range)) in row.readings.iter().enumerate() {
-            let index = usize::from(sensor);
-            if index >= self.sensors.len() {
-                self.sensors.resize_with(index + 1, SensorEvidence::default);
-            }
-            let Some(seen) = self.sensors.get_mut(index) else { continue };
-            let (view, model) = (row.views.get(number), models.get(index));
-            let sight = view.map(|view| (view.limits, view.beam)).or(model.map(|model| (model.limits, model.beam)));
-            seen.sight = sight.or(seen.sight);
-            let limits = sight.map_or(Limits::NONE, |(limits, _)| limits);
-            if limits.max().is_finite() && self.reach.is_none_or(|reach| limits.max() > reach) {
-                self.reach = Some(limits.max());
-            }
-            seen.add(range, &limits, t, changes, index < HISTOGRAMS);
-            if self.last_reset {
-                self.resets_by_sensor += u64::from(self.last_sensor.is_some_and(|last| last != sensor));
-                self.last_reset = false;
-            }
-            self.last_sensor = Some(sensor);
-            if let (Some(min_angle), Some(pose), Some((limits, _))) = (self.min_angle, pose, sight)
-                && limits.classify(range).meaning() == Meaning::Echo
-                && self.crossings.wants()
-            {
-                let arc = view
-                    .map(|view| Arc::new(&view.pose, range, &view.beam))
-                    .or(model.map(|model| Arc::new(&(isometry(pose) * model.mount_at(row.angle)), range, &model.beam)));
-                if let Some(arc) = arc {
-                    self.crossings.sample(&arc, &min_angle);
-                }
-            }
+        for number in 0..row.readings.len() {
+            self.reading(row, number, pose, models);
         }
         if let (Some(_), Some(pose)) = (self.min_angle, pose) {
             self.keep_arcs(row, pose, models);
+        }
+    }
+
+    /// Takes one of a record's readings in.
+    #[inline]
+    fn reading(&mut self, row: &Row, number: usize, pose: Option<Pose>, models: &[SensorModel]) {
+        let Some(&(sensor, range)) = row.readings.get(number) else { return };
+        let index = usize::from(sensor);
+        if index >= self.sensors.len() {
+            self.sensors.resize_with(index + 1, SensorEvidence::default);
+        }
+        let Some(seen) = self.sensors.get_mut(index) else { return };
+        let (view, model) = (row.views.get(number), models.get(index));
+        let sight = view.map(|view| (view.limits, view.beam)).or(model.map(|model| (model.limits, model.beam)));
+        seen.sight = sight.or(seen.sight);
+        let limits = sight.map_or(Limits::NONE, |(limits, _)| limits);
+        if limits.max().is_finite() && self.reach.is_none_or(|reach| limits.max() > reach) {
+            self.reach = Some(limits.max());
+        }
+        seen.add(range, &limits, row.t, self.poses.changes, index < HISTOGRAMS);
+        if self.last_reset {
+            self.resets_by_sensor += u64::from(self.last_sensor.is_some_and(|last| last != sensor));
+            self.last_reset = false;
+        }
+        self.last_sensor = Some(sensor);
+        if let (Some(min_angle), Some(pose)) = (self.min_angle, pose)
+            && limits.classify(range).meaning() == Meaning::Echo
+            && self.crossings.wants()
+            && let Some(arc) = arc(row, number, pose, models)
+        {
+            self.crossings.sample(&arc, &min_angle);
         }
     }
 
@@ -102,20 +104,8 @@ impl Evidence {
             return;
         }
         self.kept_at = Some(pose);
-        for (number, &(sensor, range)) in row.readings.iter().enumerate() {
-            let (view, model) = (row.views.get(number), models.get(usize::from(sensor)));
-            let arc = match (view, model) {
-                (Some(view), _) => {
-                    view.limits.classify(range).echo().map(|radius| Arc::new(&view.pose, radius, &view.beam))
-                }
-                (None, Some(model)) => model
-                    .limits
-                    .classify(range)
-                    .echo()
-                    .map(|radius| Arc::new(&(isometry(pose) * model.mount_at(row.angle)), radius, &model.beam)),
-                (None, None) => None,
-            };
-            if let Some(arc) = arc {
+        for number in 0..row.readings.len() {
+            if let Some(arc) = arc(row, number, pose, models) {
                 self.crossings.keep(arc);
             }
         }
@@ -143,4 +133,16 @@ impl Evidence {
     pub const fn reach(&self) -> Option<f64> {
         self.reach
     }
+}
+
+/// The arc of one of a record's readings; `None` where it has no echo, or nothing says what its sensor sees.
+fn arc(row: &Row, number: usize, pose: Pose, models: &[SensorModel]) -> Option<Arc<f64>> {
+    let &(sensor, range) = row.readings.get(number)?;
+    if let Some(view) = row.views.get(number) {
+        let radius = view.limits.classify(range).echo()?;
+        return Some(Arc::new(&view.pose, radius, &view.beam));
+    }
+    let model = models.get(usize::from(sensor))?;
+    let radius = model.limits.classify(range).echo()?;
+    Some(Arc::new(&(isometry(pose) * model.mount_at(row.angle)), radius, &model.beam))
 }

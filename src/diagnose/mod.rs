@@ -4,6 +4,7 @@
 //! [`Diagnosis`]es, each typed and with its numbers, and [`Diagnosis::advice`] puts them in words. `atm info`, the end of
 //! `atm fuse`, its summary and Python say the same of the same log. A format that finds out more adds its own through
 //! [`crate::log::Source::diagnoses`].
+mod advice;
 mod crossings;
 mod diagnosis;
 mod evidence;
