@@ -106,7 +106,7 @@ mod tests {
     fn home(topic: Option<&str>, transforms: &[&str], first: &str) -> Home {
         let transforms = transforms.iter().map(|topic| (*topic).to_owned()).collect();
         let mut home = Home::new(&Wish { topic: topic.map(str::to_owned), transforms, ..Wish::default() });
-        ["/robot1/tf", "/robot2/tf", "/tf"].map(|topic| home.expect(topic));
+        ["/robot1/tf", "/robot2/tf", "/tf"].into_iter().for_each(|topic| home.expect(topic));
         home.settle(first);
         home
     }
