@@ -60,7 +60,10 @@ impl<'a> Plausible<'a> {
             if self.suspect().is_none_or(|suspect| suspect.0 != at.0) {
                 self.drop_suspects(problems);
             }
-            self.last = Some(at);
+            // Of one time the first pose counts: what comes next is held against it.
+            if self.last.is_none_or(|last| last.0 != at.0) {
+                self.last = Some(at);
+            }
             return true;
         }
         match self.suspect() {
