@@ -9,7 +9,8 @@ use std::{
 
 use atm_core::{Isometry2, Kind};
 
-use self::{outputs::Outputs, watched::Watched};
+use self::outputs::Outputs;
+pub use self::watched::Watched;
 use crate::{
     diagnose::guessed_resolution,
     error::{Error, Place, Result},

@@ -16,6 +16,7 @@ pub mod rig;
 mod sample;
 pub mod stamp;
 pub mod storage;
+pub mod style;
 pub mod summary;
 pub mod survey;
 pub mod toml_document;

@@ -294,7 +294,7 @@ where
             self.max_range = Some(farthest);
             let span = self.settings.span(farthest);
             let span = span.map_err(|error| Error::Settings { message: error.to_string() })?;
-            span.into_iter().for_each(|span| self.fuser.set_span(span));
+            self.fuser.set_span(span);
         }
         Ok(())
     }

@@ -13,7 +13,7 @@ use crate::{
 const BATCH: u32 = 256;
 
 /// A log that tells how far it was read, and can be stopped.
-pub(super) struct Watched<'a, 'p> {
+pub struct Watched<'a, 'p> {
     log: &'a mut dyn Source,
     length: Option<u64>,
     progress: &'a mut Progress<'p>,
@@ -26,12 +26,16 @@ pub(super) struct Watched<'a, 'p> {
 const STRETCH: u64 = 1 << 20;
 
 impl<'a, 'p> Watched<'a, 'p> {
-    pub(super) fn new(log: &'a mut dyn Source, length: Option<u64>, progress: &'a mut Progress<'p>) -> Self {
+    /// The log, of a length in bytes where that is known, watched by `progress`.
+    pub fn new(log: &'a mut dyn Source, length: Option<u64>, progress: &'a mut Progress<'p>) -> Self {
         Self { log, length, progress, unwatched: 0, told: 0 }
     }
 
     /// Reports that all was read.
-    pub(super) fn finish(&mut self) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] where the run is to end.
+    pub fn finish(&mut self) -> Result<()> {
         self.tell()
     }
 

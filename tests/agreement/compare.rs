@@ -23,7 +23,11 @@ pub fn compare<T: Float>(log: &Log, tally: &mut Tally) {
     let rules = &log.rules;
     let (sensors, history) = (rules.sensors, rules.history);
 
-    let storage = SettledSlots::new(sensors, history).expect("small");
+    let storage = match rules.span {
+        Some(_) => SettledSlots::by_travel(sensors, history),
+        None => SettledSlots::new(sensors, history),
+    };
+    let storage = storage.expect("small");
     let mut fuser = Fuser::<T, _>::settled(rules.estimator(), rules.bounds(), storage);
     let settled = run(log, &mut fuser, |fuser, recorder| fuser.snapshot(recorder));
     for (index, (fate, reports)) in settled.pushes.iter().enumerate() {
@@ -32,7 +36,11 @@ pub fn compare<T: Float>(log: &Log, tally: &mut Tally) {
     }
     Matching { reference: &reference, tally, mode: 0 }.agree(&settled.rest, &reference.settled(None));
 
-    let storage = LatestSlots::new(sensors, history).expect("small");
+    let storage = match rules.span {
+        Some(_) => LatestSlots::by_travel(sensors, history),
+        None => LatestSlots::new(sensors, history),
+    };
+    let storage = storage.expect("small");
     let mut fuser = Fuser::<T, _>::latest(rules.estimator(), rules.bounds(), storage);
     let latest = run(log, &mut fuser, |fuser, recorder| fuser.snapshot(recorder));
     for (index, (fate, reports)) in latest.pushes.iter().enumerate() {
@@ -53,6 +61,7 @@ fn agree_on_fate(fate: Result<Arrival, Rejected>, expected: Fate) {
         Fate::TimeBackwards => fate == Err(Rejected::TimeBackwards),
         Fate::Held => fate == Ok(Arrival::Held),
         Fate::Still => fate == Ok(Arrival::Still),
+        Fate::Duplicate => fate == Ok(Arrival::Duplicate),
         Fate::Arrived(_) => fate == Ok(Arrival::Entered),
     };
     assert!(agrees, "{fate:?} where {expected:?} was expected");

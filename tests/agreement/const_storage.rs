@@ -34,16 +34,21 @@ fn same_bits<T: Float, const S: usize, const H: usize>() {
             let with = latest(&log, small().with_instructions(instructions));
             assert!(with == expected, "{}, seed {seed}", instructions.name());
         }
-        assert!(latest(&log, Arrays::<T, S, H, 1>::new()) == expected, "arrays, seed {seed}");
-        assert!(latest(&log, Arrays::<T, S, H, SETTLED_BLOCKS>::new()) == expected, "large arrays, seed {seed}");
+        assert!(latest(&log, Arrays::<T, S, H, 1, 0>::new()) == expected, "arrays, seed {seed}");
+        assert!(latest(&log, Arrays::<T, S, H, SETTLED_BLOCKS, 0>::new()) == expected, "large arrays, seed {seed}");
         assert!(latest(&log, large()) == expected, "large slots, seed {seed}");
 
         let causal = latest_without_snapshots(&log, LatestArrays::<T, S, H>::new());
         assert!(latest_without_snapshots(&log, small()) == causal, "causal arrays, seed {seed}");
 
+        if log.rules.span.is_some() {
+            let spaced = latest(&log, LatestSlots::<T>::by_travel(S, H).expect("small"));
+            assert!(spaced == expected, "slots by travel, seed {seed}");
+        }
+
         let (estimator, bounds) = (log.rules.estimator(), log.rules.bounds());
         let mut slots = Fuser::settled(estimator, bounds, large());
-        let mut arrays = Fuser::settled(estimator, bounds, Arrays::<T, S, H, SETTLED_BLOCKS>::new());
+        let mut arrays = Fuser::settled(estimator, bounds, Arrays::<T, S, H, SETTLED_BLOCKS, 240>::new());
         let on_slots = run(&log, &mut slots, |fuser, recorder| fuser.snapshot(recorder)).bits();
         let on_arrays = run(&log, &mut arrays, |fuser, recorder| fuser.snapshot(recorder)).bits();
         assert!(on_arrays == on_slots, "settled arrays, seed {seed}");

@@ -107,6 +107,7 @@ fn rules(sensors: usize, history: usize, frame: Frame, draws: &mut Draws) -> Rul
         max_travel: draws.chance(0.3).then(|| draws.between(0.1, 2.0)),
         min_step: draws.chance(0.2).then(|| draws.between(0.005, 0.1)),
         drop_held: draws.chance(0.2),
+        span: draws.chance(0.5).then(|| [draws.between(0.1, 3.0), 0.0]),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use atm::core::{
-    Beam, Bounds, Held, Isometry2, Limits, MinAngle, OnNone, OnTwo, Point2, RangeResolution, Reading, Scalar,
+    Beam, Bounds, Held, Isometry2, Limits, MinAngle, OnNone, OnTwo, Point2, RangeResolution, Reading, Scalar, Span,
     TransversalMedian, Travel, UnitComplex,
 };
 use nalgebra::Translation2;
@@ -67,6 +67,8 @@ pub struct Rules {
     pub max_travel: Option<f64>,
     pub min_step: Option<f64>,
     pub drop_held: bool,
+    /// The path that the map spans and the spacing of its readings, in metres, where it is by travel.
+    pub span: Option<[f64; 2]>,
 }
 
 #[derive(Debug, Clone)]
@@ -90,6 +92,11 @@ impl Log {
         let rules = &mut self.rules;
         rules.min_angle = T::narrowed(rules.min_angle).widened();
         rules.max_travel.iter_mut().chain(rules.min_step.iter_mut()).for_each(round);
+        if let Some([travel, step]) = &mut rules.span {
+            // As the span rounds them.
+            let span = Span::new(T::narrowed(*travel), rules.history as u16).expect("up to 1000 m are drawn");
+            [*travel, *step] = [(span.travel().widened() * 1e6).round() / 1e6, span.step().widened()];
+        }
         self
     }
 }
@@ -112,6 +119,9 @@ impl Rules {
         }
         if let Some(metres) = self.max_travel {
             bounds = bounds.with_max_travel(Travel::from_metres(metres).expect("up to 1000 m are drawn"));
+        }
+        if let Some([metres, _]) = self.span {
+            bounds = bounds.with_span(Span::new(T::narrowed(metres), self.history as u16).expect("as above"));
         }
         if let Some(metres) = self.min_step {
             bounds = bounds.with_min_step(T::narrowed(metres)).expect("positive steps are drawn");

@@ -94,8 +94,9 @@ impl<T: Float> Run<T> {
             bits.push(match fate {
                 Ok(Arrival::Entered) => 0,
                 Ok(Arrival::Held) => 1,
-                Ok(_) => 2,
-                Err(rejected) => 3 + *rejected as u64,
+                Ok(Arrival::Duplicate) => 2,
+                Ok(_) => 3,
+                Err(rejected) => 4 + *rejected as u64,
             });
             reports.iter().for_each(|report| report.bits(&mut bits));
         }

@@ -77,7 +77,9 @@ impl<'a> Reference<'a> {
         let mut on_arc = vec![Vec::new(); spans.len()];
         for (later, b) in spans.iter().enumerate() {
             for (earlier, a) in spans.iter().enumerate().take(later) {
-                let (true, Some(a), Some(b)) = (history.met(earlier, later), a, b) else { continue };
+                // By travel, who is crossed with whom depends on when: see the statements.
+                let met = log.rules.span.is_some() || history.met(earlier, later);
+                let (true, Some(a), Some(b)) = (met, a, b) else { continue };
                 for cut in cuts(a, b, log.rules.min_angle, &margins) {
                     let Cut { azimuths, position, angle, .. } = cut;
                     for (arc, partner, azimuth) in [(earlier, later, azimuths[0]), (later, earlier, azimuths[1])] {
@@ -98,7 +100,10 @@ impl<'a> Reference<'a> {
             Some(Fate::Arrived(arrival)) => Some(arrival),
             Some(_) => return Vec::new(),
         };
-        let leavers = (0..self.spans.len()).filter(|&arrival| self.history.stays[arrival].leaves == leaves);
+        let leavers = (0..self.spans.len()).filter(|&arrival| {
+            let stay = &self.history.stays[arrival];
+            (if self.log.rules.span.is_some() { stay.due } else { stay.leaves }) == leaves
+        });
         leavers.filter_map(|arrival| self.statement(arrival, Company::Settled)).collect()
     }
 
@@ -120,8 +125,9 @@ impl<'a> Reference<'a> {
     fn statement(&self, arrival: usize, company: Company) -> Option<Statement> {
         let span = self.spans[arrival].as_ref()?;
         let counts = |crossing: &&OnArc| match company {
+            Company::Settled if self.log.rules.span.is_some() => self.history.settled_with(arrival, crossing.partner),
             Company::Settled => true,
-            Company::Latest => crossing.partner < arrival,
+            Company::Latest => crossing.partner < arrival && self.history.met(crossing.partner, arrival),
             Company::Snapshot(arrivals) => self.history.present(crossing.partner, arrivals),
         };
         let mut crossings: Vec<OnArc> = self.on_arc[arrival].iter().filter(counts).copied().collect();

@@ -52,6 +52,7 @@ impl Tally {
                 Fate::TimeBackwards => "time going back",
                 Fate::Held => "held",
                 Fate::Still => "still",
+                Fate::Duplicate => "duplicate",
                 Fate::Arrived(_) => "arrived",
             };
             *self.fates.entry(name).or_default() += 1;

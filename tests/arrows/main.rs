@@ -17,7 +17,7 @@ const IN_TESTS: [(&str, &str); 1] = [("atm", "atm-lab")];
 
 /// The modules of `atm`, layer by layer, the lowest first.
 const LAYERS: [&[&str]; 5] = [
-    &["echo", "error", "stamp", "storage", "summary", "toml_document", "track", "units"],
+    &["echo", "error", "stamp", "storage", "style", "summary", "toml_document", "track", "units"],
     &["rig"],
     &["log"],
     &["intake", "pipeline"],

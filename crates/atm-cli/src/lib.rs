@@ -63,7 +63,8 @@ impl From<Error> for Failure {
 ///
 /// A signal that ends a run early (SIGINT, SIGTERM) ends the process here, once everything is said, as if nobody had caught it.
 pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
-    let cli = match Cli::try_parse_from(args) {
+    let args: Vec<OsString> = args.into_iter().map(Into::into).collect();
+    let cli = match Cli::try_parse_from(&args) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version come this way, too; a closed standard output is no error for them.
@@ -83,6 +84,8 @@ pub fn run(args: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
         Command::Compare(args) => command::compare::run(args),
         #[cfg(feature = "lab")]
         Command::Draw(args) => command::draw::run(args),
+        #[cfg(feature = "lab")]
+        Command::View(view) => command::view::run(view, &args),
     };
     match result {
         Ok(Outcome::Done) | Err(Failure::ReaderGone) => 0,

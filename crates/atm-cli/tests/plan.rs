@@ -50,7 +50,7 @@ fn text_says_how_far_a_history_of_ten_reaches() {
     // Nine steps of 5 in are 45 in of travel: 45 / (2 sin 15) = 86.93 in.
     let text = plan(&[&["--min-angle", "30deg"], &MOVING[..]].concat()).exits(0);
     let text = text.text();
-    for word in ["3.73", "10.52", "30.00", "9.50", "51.76", "12", "86.9", "history of 10"] {
+    for word in ["3.73", "10.52", "30.00", "9.50", "51.76", "12", "86.9", "10 readings"] {
         assert!(text.contains(word), "no {word} in: {text}");
     }
 }

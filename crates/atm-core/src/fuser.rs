@@ -269,12 +269,15 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         self.bounds.span
     }
 
-    /// Lets the local map span another travel from here on, for sensors that become known on the way; nothing where it holds
-    /// H readings.
-    pub const fn set_span(&mut self, span: Span<T>) {
-        if self.bounds.span.is_some() {
-            self.bounds.span = Some(span);
+    /// Lets the local map span another travel from here on, as where a sensor with a longer range becomes known; or none,
+    /// which is H readings alone. Returns whether it does: from one rule to the other only while the map is empty, at the
+    /// beginning and after [`Fuser::finish`].
+    pub fn set_span(&mut self, span: Option<Span<T>>) -> bool {
+        let may = self.bounds.span.is_some() == span.is_some() || self.map.is_empty();
+        if may {
+            self.bounds.span = span;
         }
+        may
     }
 
     /// Lets the storage grow: `grow` may add sensors behind those it has, and may not move or lose what it holds.

@@ -56,6 +56,15 @@ impl<T: Scalar> Span<T> {
         Self::new(crate::resolution::travel(reach, min_angle)?, history)
     }
 
+    /// With another spacing, in metres: a little below what the robot covers from one reading to the next, where H is small and
+    /// each reading is to stay.
+    ///
+    /// # Errors
+    /// [`DomainError::MinStep`] unless it is positive and finite.
+    pub fn with_step(self, step: T) -> Result<Self, DomainError> {
+        if step > T::ZERO && step.finite() { Ok(Self { step, ..self }) } else { Err(DomainError::MinStep) }
+    }
+
     /// The path that the map spans, in metres.
     pub fn travel(&self) -> T {
         T::from_count(self.travel.0) / T::MICROMETRES
@@ -207,7 +216,15 @@ impl<S> LocalMap<S> {
         let columns = self.storage.columns();
         let Some(ring) = columns.rings.get(usize::from(sensor)) else { return false };
         let slot = usize::from(sensor) * columns.depth + usize::from(ring.newest);
-        ring.kept > 0 && columns.time(slot) == t && columns.sensor_position(slot) == place
+        ring.last.is_some() && columns.time(slot) == t && columns.sensor_position(slot) == place
+    }
+
+    /// Whether nothing is in it, and nothing waits.
+    pub(crate) fn is_empty<T: Scalar>(&mut self) -> bool
+    where
+        S: Storage<T>,
+    {
+        self.waiting.1 == 0 && self.storage.columns().rings.iter().all(|ring| ring.present == 0)
     }
 
     /// The number of the next arrival.

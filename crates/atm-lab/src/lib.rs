@@ -11,4 +11,5 @@ pub mod map;
 pub mod simulate;
 pub mod thinned;
 pub mod truth;
+pub mod view;
 pub mod world;

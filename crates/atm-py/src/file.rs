@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// A number in SI units, or a text with its unit, as the command line takes it.
-fn quantity(
+pub fn quantity(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,
     parse: impl Fn(&str) -> Result<f64, UnitError>,

@@ -21,6 +21,7 @@ mod sensors;
 mod simulate;
 mod table;
 mod time;
+mod view;
 
 use std::ffi::OsString;
 
@@ -48,6 +49,7 @@ mod _atm {
         plan::plan,
         rig::{_restore_rig, _restore_sensor, PyRig, PySensor},
         simulate::simulate,
+        view::_view,
     };
 
     #[pymodule_init]

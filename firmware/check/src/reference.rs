@@ -138,6 +138,7 @@ pub fn run<E: Judged>(log: &Log<'_>) -> Result<Reference, DomainError> {
     let (single, double) = E::both();
     let mut runs = Runs { fuser: Fuser::latest(single, Bounds::NONE, Store32::new()), lines: Vec::new() };
     let mut precision = DoublePrecision::new(double)?;
+    runs.fuser.set_span(Some(replay::span()?));
     runs.run(
         "log",
         &Ring::<f32>::nomad200()?,
@@ -146,12 +147,14 @@ pub fn run<E: Judged>(log: &Log<'_>) -> Result<Reference, DomainError> {
     );
     let boundless = Ring::boundless()?;
     let (mut adversary, mut worst) = (Adversary::new(), 0);
+    runs.fuser.set_span(None);
     runs.run(
         "adversary",
         &boundless,
         |index| adversary.event(&boundless, index),
         |_, outcome| worst = worst.max(outcome.echo.map_or(0, |echo| echo.sort().1)),
     );
+    runs.fuser.set_span(Some(replay::span()?));
     let (mut faults, mut draws, mut tally) = (Faults::new(), Faults::new(), Tally::default());
     runs.run("faults", &boundless, |index| faults.event(log, index), |_, outcome| tally.count(outcome));
     for index in 0.. {
@@ -195,7 +198,7 @@ struct DoublePrecision<E> {
 
 impl<E: Estimator<f64, Echo: Copy + Told>> DoublePrecision<E> {
     fn new(estimator: E) -> Result<Self, DomainError> {
-        let fuser = Fuser::latest(estimator, Bounds::NONE, LatestArrays::new());
+        let fuser = Fuser::latest(estimator, Bounds::NONE.with_span(replay::span()?), LatestArrays::new());
         Ok(Self { fuser, ring: Ring::<f64>::nomad200()?, found: Precision::default() })
     }
 

@@ -110,10 +110,14 @@ fn replay_all(bench: &mut Bench) -> Result<(), DomainError> {
     let Some(log) = Log::new(LOG) else {
         semihosting::exit(2);
     };
+    bench.fuser.set_span(Some(replay::span()?));
     bench.run("log", &Ring::<f32>::nomad200()?, &mut |index| log.event(index));
     let boundless = Ring::boundless()?;
     let mut adversary = Adversary::new();
+    // The last H readings of every sensor, wherever they were taken: only so is every slot full.
+    bench.fuser.set_span(None);
     bench.run("adversary", &boundless, &mut |index| adversary.event(&boundless, index));
+    bench.fuser.set_span(Some(replay::span()?));
     let mut faults = Faults::new();
     bench.run("faults", &boundless, &mut |index| faults.event(&log, index));
     Ok(())

@@ -16,6 +16,8 @@ mod log;
 mod outcome;
 mod ring;
 
+use atm_core::{DomainError, Scalar, Span};
+
 pub use crate::{
     adversary::{Adversary, WORST_CROSSINGS, WORST_SUPPORT},
     event::Event,
@@ -31,6 +33,16 @@ pub const SENSORS: usize = 16;
 
 /// H: readings of each sensor in the local map.
 pub const HISTORY: usize = 10;
+
+/// What the local map spans over the recorded log: the 50 in (1.27 m) over which the paper's robot takes ten readings
+/// (Sec. IV-D), with a spacing a little below the 5 in from one sweep to the next, so that each reading stays.
+///
+/// # Errors
+/// None: the numbers are within their domains.
+pub fn span<T: Scalar>() -> Result<Span<T>, DomainError> {
+    let centimetres = |count| T::from_count(count) / T::from_count(100);
+    Span::new(centimetres(127), HISTORY as u16)?.with_step(centimetres(12))
+}
 
 /// The fuser under test: `latest`, in single precision, on storage of const size.
 pub type Fuser32<E> = atm_core::Fuser<f32, Store32, E>;
@@ -50,12 +62,12 @@ mod tests {
     #[test]
     fn memory_grows_with_sensors_and_history_as_documented() {
         const fn latest<const S: usize, const H: usize>() -> (usize, usize) {
-            (size_of::<LatestArrays<f32, S, H>>(), 48 * S * H + 16 * S)
+            (size_of::<LatestArrays<f32, S, H>>(), 48 * S * H + 20 * S)
         }
         for (size, expected) in [latest::<16, 10>(), latest::<8, 20>(), latest::<24, 12>()] {
             assert_eq!(size, expected);
         }
-        assert_eq!(size_of::<Arrays<f32, 16, 10, 5>>(), 308 * 160 + 16 * 16);
+        assert_eq!(size_of::<Arrays<f32, 16, 10, 5>>(), 308 * 160 + 16 * 20);
     }
 
     #[test]

@@ -14,6 +14,8 @@ mod plan;
 #[cfg(feature = "lab")]
 mod simulate;
 mod values;
+#[cfg(feature = "lab")]
+mod view;
 
 use clap::{Parser, Subcommand};
 
@@ -23,9 +25,10 @@ pub use self::{
     draw::{Draw, PanelSpec},
     eval::Eval,
     simulate::Simulate,
+    view::View,
 };
 pub use self::{
-    fuse::{Emit, Fuse, NoneOption, TwoOption},
+    fuse::{Emit, Fuse, HeldOption, NoneOption, TwoOption},
     info::Info,
     plan::Plan,
 };
@@ -64,4 +67,7 @@ pub enum Command {
     /// Draw walls, path, arcs, crossings and echoes
     #[cfg(feature = "lab")]
     Draw(Box<Draw>),
+    /// Replay a log in the browser: one page, offline
+    #[cfg(feature = "lab")]
+    View(Box<View>),
 }

@@ -11,6 +11,8 @@ pub mod info;
 pub mod plan;
 #[cfg(feature = "lab")]
 pub mod simulate;
+#[cfg(feature = "lab")]
+pub mod view;
 
 use atm::error::Error;
 

@@ -92,10 +92,13 @@ fn as_text(args: &Plan, numbers: &Numbers) -> String {
     match numbers.motion {
         Some((readings, reach)) => {
             text += &format!("readings     {readings:>8}      of one sensor on the way, the first included\n");
-            text += &format!("reach      {}  is as far as a history of {PAPER_HISTORY} takes it\n", length(reach));
+            text +=
+                &format!("reach      {}  is as far as the paper's {PAPER_HISTORY} readings take it\n", length(reach));
             if readings > PAPER_HISTORY {
                 text += &format!(
-                    "note: a history of {PAPER_HISTORY} is too short for this distance; take --history {readings}\n"
+                    "note: {PAPER_HISTORY} readings (--preset paper) are too few for this distance; the local map spans the \
+                     travel with --reach {:.3}m\n",
+                    args.distance
                 );
             }
         }

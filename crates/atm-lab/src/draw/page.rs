@@ -73,7 +73,7 @@ impl Picture {
         let size = format!("width=\"{width}\" height=\"{height}\"");
         let _ = writeln!(ink.svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" {size}>");
         let title = if self.title.is_empty() { "atm" } else { &self.title };
-        let _ = writeln!(ink.svg, "<title>{}</title>\n<style>{}</style>", escaped(title), style::SHEET);
+        let _ = writeln!(ink.svg, "<title>{}</title>\n<style>{}</style>", escaped(title), style::sheet());
         let _ = writeln!(ink.svg, "<rect class=\"paper\" {size}/>");
         self.head(&layout, &mut ink);
         let empty = [Panel::default()];

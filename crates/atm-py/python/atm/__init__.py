@@ -4,7 +4,8 @@ H. Choset, K. Nagatani, N. A. Lazar, "The Arc-Transversal Median Algorithm: A Ge
 Ultrasonic Sensor Azimuth Accuracy", IEEE Transactions on Robotics and Automation 19(3), 2003.
 
 Arrays in, arrays out: :func:`fuse`, :func:`crossings`. Tables: :func:`fuse_table`. Files: :func:`fuse_file`. Reading by
-reading: :class:`Fuser`. Sensors: :class:`Rig`, :class:`Sensor`. What to expect: :func:`plan`. Pictures: :mod:`atm.plot`.
+reading: :class:`Fuser`. Sensors: :class:`Rig`, :class:`Sensor`. What to expect: :func:`plan`. Pictures: :mod:`atm.plot`. A replay
+in the browser or notebook: :func:`view`.
 Worlds and scores: :func:`simulate`, :func:`evaluate`, :func:`compare`.
 
 Metres, radians; times are float seconds or int nanoseconds.
@@ -27,6 +28,7 @@ from atm._atm import (
     plan,
     simulate,
 )
+from atm._view import Replay, view
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Echo",
     "Fuser",
+    "Replay",
     "Rig",
     "Sensor",
     "__version__",
@@ -45,6 +48,7 @@ __all__ = [
     "fuse_table",
     "plan",
     "simulate",
+    "view",
 ]
 
 

@@ -14,6 +14,7 @@ __all__ = [
     "_main",
     "_restore_rig",
     "_restore_sensor",
+    "_view",
     "compare",
     "crossings",
     "evaluate",
@@ -346,6 +347,24 @@ def compare(
     reach: float | None = None,
     preset: Literal["paper"] | None = None,
 ) -> dict[str, dict[str, Any]]: ...
+def _view(
+    input: _Path,
+    command: str,
+    *,
+    rig: Rig | _Path | None = None,
+    poses: _Path | None = None,
+    world: _Path | None = None,
+    set: dict[str, str | float] | None = None,
+    truth: _Path | None = None,
+    methods: Iterable[str] | str | None = None,
+    history: int | None = None,
+    reach: float | str | None = None,
+    preset: Literal["paper"] | None = None,
+    min_angle: float | str | None = None,
+    range_resolution: float | str | None = None,
+    range_error: float | str | None = None,
+    units: Literal["metric", "inches"] | None = None,
+) -> str: ...
 def _main(argv: Sequence[str]) -> int: ...
 def _restore_rig(
     name: str, sensors: Sequence[_SensorParts], toml: tuple[str, str] | None

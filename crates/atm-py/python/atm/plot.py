@@ -1,6 +1,6 @@
 """Pictures of arcs, crossings and echoes, drawn with matplotlib as the figures of the paper are.
 
-Thin grey arcs and dots where they cross (Fig. 16), plus marks for the medians (Fig. 17). matplotlib is imported at the first
+Thin grey arcs and dots where they cross (Fig. 16), and a mark for each echo by its kind (Fig. 17). matplotlib is imported at the first
 call and comes with ``pip install 'atm-py[plot]'``. Nothing is shown or saved: that is up to the caller.
 """
 
@@ -19,14 +19,18 @@ if TYPE_CHECKING:
 
 __all__ = ["arcs", "echoes"]
 
-# Drawn from the back to the front, so that what is good enough to drive by lies on top.
+# The library's table of styles, which a test holds this one against. Drawn from the back to the front, so that what is good enough to
+# drive by lies on top.
 _STYLES: dict[str, dict[str, Any]] = {
-    "center": {"marker": "o", "s": 4, "color": "0.6", "linewidths": 0},
-    "near": {"marker": "s", "s": 5, "color": "0.6", "linewidths": 0},
-    "pair": {"marker": "x", "s": 14, "color": "tab:orange", "linewidths": 0.8},
-    "single": {"marker": "+", "s": 26, "color": "tab:blue", "linewidths": 0.8},
-    "median": {"marker": "+", "s": 34, "color": "black", "linewidths": 1.0},
+    "center": {"marker": "o", "s": 6, "color": "#d55e00", "linewidths": 0},
+    "near": {"marker": "s", "s": 9, "color": "#b55d8d", "linewidths": 0},
+    "pair": {"marker": "^", "s": 16, "color": "#b07a00", "linewidths": 0},
+    "single": {"marker": "+", "s": 40, "color": "#111111", "linewidths": 1.0},
+    "median": {"marker": "o", "s": 14, "color": "#0072b2", "linewidths": 0},
+    "wall": {"marker": "v", "s": 16, "color": "#008a64", "linewidths": 0},
+    "point": {"marker": "D", "s": 12, "color": "#0072b2", "linewidths": 0},
 }
+_CROSSINGS = "#2b87b8"
 # A chord of a sixteenth of a beam of 180° leaves its arc by less than half a percent of the range.
 _CHORDS = 16
 
@@ -39,7 +43,7 @@ def echoes(
     legend: bool = True,
     **style: Any,
 ) -> Axes:
-    """Draw echo points, each kind by its own mark: plus marks for medians, dots for the centres of cones.
+    """Draw echo points, each kind by its own mark, in the colours of ``atm draw``.
 
     Parameters
     ----------
@@ -69,7 +73,7 @@ def echoes(
 
     Notes
     -----
-    The marks are those of Figs. 6 and 17 of Choset, Nagatani and Lazar (2003).
+    Both estimators' kinds are drawn: ``median``, ``single``, ``center``, ``near`` and ``pair``, and the consensus's ``point`` and ``wall``.
 
     Examples
     --------
@@ -158,7 +162,7 @@ def arcs(
     # Behind echoes, whichever is drawn first.
     ax.add_collection(LineCollection(list(lines), **{"color": color, "linewidth": linewidth, "zorder": 0.9, **style}))
     if crossings is not None:
-        ax.scatter(_column(crossings, "x"), _column(crossings, "y"), s=3, color="black", linewidths=0)
+        ax.scatter(_column(crossings, "x"), _column(crossings, "y"), s=3, color=_CROSSINGS, linewidths=0)
     ax.autoscale_view()
     return _in_metres(ax)
 

@@ -1,24 +1,19 @@
 //! Echoes and crossings as the points of clouds.
 
-use atm_core::ArcCrossing;
+use atm_core::{ArcCrossing, Kind};
 
 use super::{
     content::Color,
     points::{ALIGNMENT, kind_number},
     sweep::MOST_POINTS,
 };
-use crate::echo::AnyEcho;
+use crate::{echo::AnyEcho, style};
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito, "Color Universal Design"): blue is sharp, orange is not.
+/// A kind's colour, for viewers' dark grounds; what lies nowhere better than in its cone is let shine through.
 pub(super) fn color_of(kind: &str) -> Color {
-    match kind {
-        "median" | "point" => Color::new(0x00_72_b2, 0xff),
-        "wall" => Color::new(0x00_9e_73, 0xff),
-        "single" => Color::new(0x56_b4_e9, 0xff),
-        "near" => Color::new(0xcc_79_a7, 0xff),
-        "pair" => Color::new(0xe6_9f_00, 0xff),
-        _ => Color::new(0xd5_5e_00, 0xc0),
-    }
+    let alpha = if kind == Kind::Center.name() { 0xc0 } else { 0xff };
+    let style = style::named(kind).or_else(|| style::named(Kind::Center.name()));
+    Color::new(style.map_or(0, |style| style.on_dark), alpha)
 }
 
 /// The fields of an echo behind its place, in their order.

@@ -3,7 +3,7 @@
 use atm_core::{ArcCrossing, Isometry2, Point2, Reading};
 
 use super::content::{Color, Drawing, Form, Scene};
-use crate::{echo::AnyEcho, log::Row, track::Pose};
+use crate::{echo::AnyEcho, log::Row, style, track::Pose};
 
 /// A sweep lasts no longer, in nanoseconds of log time: so much later than its report an echo may be logged.
 const LONGEST: u64 = 100_000_000;
@@ -16,9 +16,9 @@ const LEAST_STEPS: f64 = 4.0;
 /// Readings of one sensor whose arcs stay drawn, at most.
 const MOST_DRAWN: usize = 100;
 
-const ARC_COLOR: Color = Color::new(0x99_99_99, 0xa0);
+const ARC_COLOR: Color = Color::new(style::ARCS.on_dark, 0xa0);
 const ARC_WIDTH: f64 = 0.005;
-pub(super) const CROSSING_COLOR: Color = Color::new(0x00_9e_73, 0xff);
+pub(super) const CROSSING_COLOR: Color = Color::new(style::CROSSINGS.on_dark, 0xff);
 const CROSSING_SIZE: f64 = 0.02;
 /// Whose drawings of crossings are: no sensor's.
 pub(super) const CROSSING_GROUP: u16 = u16::MAX;

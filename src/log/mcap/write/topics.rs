@@ -6,13 +6,14 @@ use super::{
     points::Points,
     schema::SchemaKind,
 };
+use crate::style;
 
 /// Echoes as points, by sweep: the echo table.
 pub const ECHOES: &str = "/atm/echoes";
 /// Crossings as points, by sweep: the table of crossings.
 pub const CROSSING_POINTS: &str = "/atm/crossings/points";
 
-pub(super) const PATH_COLOR: Color = Color::new(0xf0_e4_42, 0xff);
+pub(super) const PATH_COLOR: Color = Color::new(style::PATH.on_dark, 0xff);
 
 /// A topic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
