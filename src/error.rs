@@ -39,6 +39,12 @@ pub enum Reason {
     UnknownCause,
     /// No pose within the gap on both sides of the reading.
     NoPose,
+    /// The poses around the reading, or its own, move faster than a robot can.
+    ImpossibleMotion,
+    /// A reading of another robot than the one whose poses are used.
+    OtherRobot,
+    /// Bytes behind the end of a recording that are no recording.
+    TrailingData,
     /// Earlier than the latest usable record.
     TimeBackwards,
     /// A record longer than [`crate::log::table::MAX_RECORD`] bytes, or than a recording's messages may be.
@@ -77,6 +83,9 @@ impl Reason {
             Self::UnknownSensor => "unknown_sensor",
             Self::UnknownCause => "unknown_cause",
             Self::NoPose => "no_pose",
+            Self::ImpossibleMotion => "impossible_motion",
+            Self::OtherRobot => "other_robot",
+            Self::TrailingData => "trailing_data",
             Self::TimeBackwards => "time_backwards",
             Self::TooLong => "too_long",
             Self::BadMessage => "bad_message",

@@ -12,7 +12,7 @@ use crate::{
     rig::Rig,
     stamp,
     summary::Summary,
-    track::{Clock, Pose, PoseStream, Tick, Track, time_backwards},
+    track::{Clock, Pose, PoseMiss, PoseStream, Tick, Track, time_backwards},
 };
 
 /// The robot's path, from whatever file.
@@ -29,6 +29,16 @@ pub struct SensorModel {
     pub beam: Beam<f64>,
     /// Its range resolution.
     pub range_resolution: RangeResolution<f64>,
+}
+
+impl SensorModel {
+    /// The mount, turned by an angle in radians.
+    pub fn mount_at(&self, angle: f64) -> Isometry2<f64> {
+        if angle == 0.0 {
+            return self.mount;
+        }
+        self.mount * UnitComplex::from_cos_sin_unchecked(libm::cos(angle), libm::sin(angle))
+    }
 }
 
 /// What holds for sensors of which a rig says nothing.
@@ -184,7 +194,8 @@ impl<C: Consumer> Intake<'_, C> {
             return self.turn_back(row);
         }
         let Some(pose) = self.pose(row)? else {
-            self.summary.dropped.add(no_pose(row));
+            let miss = self.track.as_deref().map(Track::miss);
+            self.summary.dropped.add(no_pose(row, miss));
             return Ok(());
         };
         self.summary.skipped.empty += row.empty;
@@ -231,7 +242,7 @@ pub fn readings<'a>(row: &'a Row, pose: Pose, sensors: &'a [SensorModel]) -> imp
 }
 
 /// From the robot's frame to the fixed one.
-fn isometry(pose: Pose) -> Isometry2<f64> {
+pub(crate) fn isometry(pose: Pose) -> Isometry2<f64> {
     Isometry2::from_parts(
         Vector2::new(pose.x, pose.y).into(),
         UnitComplex::from_cos_sin_unchecked(libm::cos(pose.yaw), libm::sin(pose.yaw)),
@@ -246,7 +257,7 @@ fn readings_at<'a>(
     let modelled = move |sensor: u16| {
         let model = sensors.get(usize::from(sensor))?;
         Some(View {
-            pose: robot * model.mount,
+            pose: robot * model.mount_at(row.angle),
             limits: model.limits,
             beam: model.beam,
             range_resolution: model.range_resolution,
@@ -266,7 +277,10 @@ fn readings_at<'a>(
     })
 }
 
-/// The problem of a record for whose time there is no pose.
-pub(crate) fn no_pose(row: &Row) -> Problem {
-    Problem { reason: Reason::NoPose, place: row.place.clone(), value: format!("t {}", stamp::text(row.t)) }
+/// The problem of a record for whose time there is no pose, with what is known of the poses around it.
+pub(crate) fn no_pose(row: &Row, miss: Option<PoseMiss>) -> Problem {
+    let impossible = miss.is_some_and(PoseMiss::is_impossible);
+    let reason = if impossible { Reason::ImpossibleMotion } else { Reason::NoPose };
+    let words = miss.map(|miss| format!(": of the poses {miss}")).unwrap_or_default();
+    Problem { reason, place: row.place.clone(), value: format!("t {}{words}", stamp::text(row.t)) }
 }

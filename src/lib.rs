@@ -5,6 +5,7 @@
 
 pub use atm_core as core;
 
+pub mod diagnose;
 pub mod echo;
 pub mod error;
 pub mod intake;
@@ -12,6 +13,7 @@ pub mod job;
 pub mod log;
 pub mod pipeline;
 pub mod rig;
+mod sample;
 pub mod stamp;
 pub mod storage;
 pub mod style;

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use atm_core::{
-    ArcCrossing, Arrival, Bounds, DomainError, Estimator, Fuser, Meaning, Reading, Rejected, Sink, Span, Storage,
+    ArcCrossing, Arrival, Bounds, DomainError, Estimator, Fuser, Held, Kind, Meaning, Reading, Rejected, Sink, Span,
+    Storage,
 };
 
 pub use crate::intake::{AnyTrack, Defaults, SensorModel, min_angle_for, readings};
 use crate::{
+    diagnose::{Diagnosis, Evidence, MapSpan, Run, diagnose},
     echo::{AnyEcho, AnyEstimator},
     error::{Error, Problem, Reason, Result},
     intake::{Consumer, read},
@@ -153,10 +155,28 @@ pub fn fuse(
     sink: &mut dyn EchoSink,
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>) {
-    match settings.estimator {
-        AnyEstimator::Median(median) => fuse_by(median, source, track, sensors, settings, sink, progress),
-        AnyEstimator::Consensus(consensus) => fuse_by(consensus, source, track, sensors, settings, sink, progress),
-    }
+    let mut evidence = Evidence::new(Some(*settings.estimator.min_angle()));
+    let observed = (&mut evidence, sink);
+    let (mut summary, result) = match settings.estimator {
+        AnyEstimator::Median(median) => fuse_by(median, source, track, sensors, settings, observed, progress),
+        AnyEstimator::Consensus(consensus) => fuse_by(consensus, source, track, sensors, settings, observed, progress),
+    };
+    summary.advice = advice(&evidence, &summary, settings, source.diagnoses());
+    (summary, result)
+}
+
+/// What is likely wrong with a log that was fused.
+fn advice(evidence: &Evidence, summary: &Summary, settings: &Settings, found: Vec<Diagnosis>) -> Vec<Diagnosis> {
+    let run = Run {
+        resolved: summary.resolved(),
+        arcs: summary.echoes.total() + summary.ignored_pairs + summary.ignored_none,
+        pairs: summary.ignored_pairs,
+        near: summary.echoes.get(Kind::Near.name()),
+        span: summary.map_travel_m.map_or(MapSpan::Readings(settings.history.most()), MapSpan::Travel),
+        min_angle: *settings.estimator.min_angle(),
+    };
+    let drops_held = settings.bounds.held() != Held::Keep;
+    diagnose(evidence, &summary.dropped, summary.clock_resets, drops_held, Some(&run), found)
 }
 
 fn fuse_by<E: Estimator<f64>>(
@@ -165,7 +185,7 @@ fn fuse_by<E: Estimator<f64>>(
     track: Option<&mut AnyTrack>,
     sensors: &[SensorModel],
     settings: &Settings,
-    sink: &mut dyn EchoSink,
+    (evidence, sink): (&mut Evidence, &mut dyn EchoSink),
     progress: &mut dyn FnMut(u64),
 ) -> (Summary, Result<()>)
 where
@@ -174,11 +194,11 @@ where
     let mut summary = Summary { echoes: Counts::of(settings.estimator.kinds()), ..Summary::default() };
     let result = match settings.emit {
         Emit::Latest => latest_fuser(estimator, settings, sensors).and_then(|fuser| {
-            let fusing = Fusing::new(fuser, settings, sensors, sink);
+            let fusing = Fusing::new(fuser, settings, Observed { evidence, sensors }, sink);
             fusing.run(source, track, sensors, settings.strict, &mut summary, progress)
         }),
         Emit::Settled => settled_fuser(estimator, settings, sensors).and_then(|fuser| {
-            let fusing = Fusing::new(fuser, settings, sensors, sink);
+            let fusing = Fusing::new(fuser, settings, Observed { evidence, sensors }, sink);
             fusing.run(source, track, sensors, settings.strict, &mut summary, progress)
         }),
     };
@@ -228,9 +248,16 @@ fn too_large(error: StorageError) -> Error {
     Error::Settings { message: error.to_string() }
 }
 
+/// What is seen of the log on the way.
+struct Observed<'a> {
+    evidence: &'a mut Evidence,
+    sensors: &'a [SensorModel],
+}
+
 /// The consumer that fuses.
 struct Fusing<'a, E, const B: usize> {
     fuser: Fuser<f64, Slots<f64, B>, E>,
+    observed: Observed<'a>,
     /// Sensors that the fuser has room for.
     room: usize,
     settings: &'a Settings,
@@ -249,14 +276,14 @@ where
     fn new(
         fuser: Fuser<f64, Slots<f64, B>, E>,
         settings: &'a Settings,
-        sensors: &[SensorModel],
+        observed: Observed<'a>,
         sink: &'a mut dyn EchoSink,
     ) -> Self {
         let wants_crossings = sink.wants_crossings();
         // What a rig says of its sensors is known; what a recording says comes with its readings.
-        let max_range = sensors.is_empty().then_some(0.0);
-        let room = sensors.len().max(1);
-        Self { fuser, room, settings, max_range, sink, wants_crossings, crossings: Vec::new() }
+        let max_range = observed.sensors.is_empty().then_some(0.0);
+        let room = observed.sensors.len().max(1);
+        Self { fuser, observed, room, settings, max_range, sink, wants_crossings, crossings: Vec::new() }
     }
 
     /// The local map spans what the farthest of the sensors takes, once that is known.
@@ -331,6 +358,7 @@ where
     }
 
     fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        self.observed.evidence.record(row, Some(pose), self.observed.sensors);
         self.reach_farther(row)?;
         self.sink.record(row, pose)
     }
@@ -355,6 +383,7 @@ where
     }
 
     fn clock_reset(&mut self, summary: &mut Summary) -> Result<()> {
+        self.observed.evidence.clock_reset();
         self.finish(summary)
     }
 

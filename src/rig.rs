@@ -75,6 +75,21 @@ impl Ranging {
     }
 }
 
+/// Which values of a sensor somebody gave. What is left open comes from the log where it says it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Given {
+    mount: bool,
+    min_range: bool,
+    max_range: bool,
+}
+
+impl Given {
+    /// A mount, and each limit that excludes anything.
+    fn of(ranging: &Ranging) -> Self {
+        Self { mount: true, min_range: ranging.min_range > 0.0, max_range: ranging.max_range.is_finite() }
+    }
+}
+
 /// One range sensor on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
@@ -82,6 +97,7 @@ pub struct Sensor {
     mount: Isometry2<f64>,
     ranging: Ranging,
     topic: Option<String>,
+    given: Given,
 }
 
 impl Sensor {
@@ -99,7 +115,7 @@ impl Sensor {
             return refuse("the mount must be finite".to_owned());
         }
         match ranging.check() {
-            Ok(()) => Ok(Self { id, mount, ranging, topic: None }),
+            Ok(()) => Ok(Self { id, mount, ranging, topic: None, given: Given::of(&ranging) }),
             Err(Invalid { key, message }) => refuse(format!("{key} {message}")),
         }
     }
@@ -107,6 +123,34 @@ impl Sensor {
     /// The same sensor, found in logs under a topic or frame id.
     pub fn with_topic(self, topic: impl Into<String>) -> Self {
         Self { topic: Some(topic.into()), ..self }
+    }
+
+    /// The same sensor, with its mount left to the log. [`Self::mount`] stays as it is, for logs that say none.
+    pub fn with_open_mount(mut self) -> Self {
+        self.given.mount = false;
+        self
+    }
+
+    /// The same sensor, with limits that somebody gave, even where they exclude nothing.
+    fn with_given_limits(mut self, min_range: bool, max_range: bool) -> Self {
+        self.given.min_range |= min_range;
+        self.given.max_range |= max_range;
+        self
+    }
+
+    /// Whether the rig says where the sensor sits; else a recording's transforms do.
+    pub fn has_mount(&self) -> bool {
+        self.given.mount
+    }
+
+    /// Smallest range that is an echo, in metres, where the rig says it.
+    pub fn given_min_range(&self) -> Option<f64> {
+        self.given.min_range.then_some(self.ranging.min_range)
+    }
+
+    /// Range from which on a reading is no echo, in metres, where the rig says it.
+    pub fn given_max_range(&self) -> Option<f64> {
+        self.given.max_range.then_some(self.ranging.max_range)
     }
 
     /// The id by which logs and outputs name the sensor; never empty.
@@ -156,6 +200,7 @@ pub struct Rig {
     name: String,
     sensors: Vec<Sensor>,
     log: Option<LogFormats>,
+    log_keys: Vec<String>,
     ids: Vec<Arc<str>>,
     by_id: HashMap<Arc<str>, u16>,
 }
@@ -179,7 +224,7 @@ impl Rig {
                 return Err(rig_error(&name, format!("two sensors have the id `{id}`")));
             }
         }
-        Ok(Self { name, sensors, log: None, ids, by_id })
+        Ok(Self { name, sensors, log: None, log_keys: Vec::new(), ids, by_id })
     }
 
     /// A rig named `ring`: sensors evenly on a circle of `radius` metres, looking outwards.
@@ -235,6 +280,16 @@ impl Rig {
         Self { log: Some(log), ..self }
     }
 
+    /// The same rig, with the keys that its file's `[log]` section has.
+    fn with_log_keys(self, log_keys: Vec<String>) -> Self {
+        Self { log_keys, ..self }
+    }
+
+    /// The keys of the rig file's `[log]` section; none where the formats come from code.
+    pub fn log_keys(&self) -> &[String] {
+        &self.log_keys
+    }
+
     /// The same rig, with a beam, in radians within (0, π], for the sensors of which it does not say theirs.
     pub fn with_field_of_view(mut self, field_of_view: f64) -> Self {
         for sensor in &mut self.sensors {
@@ -285,7 +340,8 @@ fn ring_sensors(count: usize, radius: f64, first_yaw: f64, ranging: Ranging) -> 
     let sensor = |i: usize| {
         let boresight = direction(first_yaw + i as f64 * TAU / count as f64);
         let position = Translation2::new(radius * boresight.re, radius * boresight.im);
-        Sensor { id: i.to_string(), mount: Isometry2::from_parts(position, boresight), ranging, topic: None }
+        let mount = Isometry2::from_parts(position, boresight);
+        Sensor { id: i.to_string(), mount, ranging, topic: None, given: Given::of(&ranging) }
     };
     Ok((0..count).map(sensor).collect())
 }

@@ -85,6 +85,15 @@ pub fn write(ns: i64, out: &mut Vec<u8>) {
     out.extend_from_slice(&text[start..]);
 }
 
+/// Appends a time as [`write()`] does, and always with a point: `12.345`, `5.0`. Whoever guesses the kind of a column from its
+/// first rows takes it for decimal seconds, not for whole numbers of anything.
+pub fn write_decimal(ns: i64, out: &mut Vec<u8>) {
+    write(ns, out);
+    if ns.unsigned_abs().is_multiple_of(SECOND) {
+        out.extend_from_slice(b".0");
+    }
+}
+
 /// The last decimal digit, as ASCII.
 fn digit(value: u64) -> u8 {
     b'0' + (value % 10) as u8

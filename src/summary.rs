@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use atm_core::{Kind, Reflector};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use crate::{
+    diagnose::Diagnosis,
     echo::AnyEstimator,
     error::{Problem, Reason},
 };
@@ -38,6 +40,8 @@ pub struct Summary {
     pub clock_resets: u64,
     /// Whether the input ends in the middle of something, or some of it can't be unpacked.
     pub input_damaged: bool,
+    /// What is likely wrong, the costliest first, and what cures it.
+    pub advice: Vec<Diagnosis>,
 }
 
 /// Readings that were usable and still took no slot in the local map.
@@ -50,6 +54,9 @@ pub struct Skipped {
     /// Empty cells: sensors that did not fire.
     pub empty: u64,
 }
+
+/// Kinds of echoes whose place on the arc is known, of either estimator.
+const RESOLVED: [&str; 4] = [Kind::Median.name(), Kind::Single.name(), Reflector::Point.name(), Reflector::Wall.name()];
 
 /// Most kinds that an estimator's echoes have.
 const MOST_KINDS: usize = 5;
@@ -135,6 +142,11 @@ impl Summary {
     pub fn drop(&mut self, problem: Problem) {
         self.input_damaged |= matches!(problem.reason, Reason::Truncated | Reason::BadChunk);
         self.dropped.add(problem);
+    }
+
+    /// Echoes that are resolved: medians and singles, or points and walls.
+    pub fn resolved(&self) -> u64 {
+        RESOLVED.iter().map(|kind| self.echoes.get(kind)).sum()
     }
 
     /// Whether every record of the input could be used.

@@ -1,6 +1,10 @@
 //! Where the robot was: poses as a stream, merged with readings in time order.
+mod limits;
+
 use std::{collections::VecDeque, f64::consts::TAU};
 
+pub(crate) use self::limits::{Between, Periods, seconds};
+pub use self::limits::{GapLimit, MotionLimit, PoseLimits, PoseMiss, Step};
 use crate::error::{Place, Problem, Reason, Result};
 
 /// Records in a row, earlier than the latest usable one but in order among themselves, that make a clock reset.
@@ -117,7 +121,12 @@ const LOOKAHEAD: usize = 1 << 16;
 /// A trajectory that is asked for poses in time order, and read only as far as needed.
 pub struct Track<P> {
     stream: P,
-    max_gap: u64,
+    limits: PoseLimits,
+    periods: Periods,
+    /// Why the last time that was asked for has no pose.
+    miss: PoseMiss,
+    /// Longest time between poses that were used though they are farther apart than usual, and the farthest step between them.
+    bridged: Option<(u64, Step)>,
     clock: Clock,
     epoch: u32,
     /// The last pose before the latest time that had one, and those read since.
@@ -129,10 +138,32 @@ pub struct Track<P> {
 }
 
 impl<P: PoseStream> Track<P> {
-    /// A track over `stream` that answers only where there are poses within `max_gap` nanoseconds on both sides.
-    pub fn new(stream: P, max_gap: u64) -> Self {
-        let window = VecDeque::new();
-        Self { stream, max_gap, clock: Clock::new(), epoch: 0, window, begun: false, gave_up: false }
+    /// A track over `stream` that answers only where the poses on both sides keep to `limits`; a number is the largest gap in
+    /// nanoseconds.
+    pub fn new(stream: P, limits: impl Into<PoseLimits>) -> Self {
+        Self {
+            stream,
+            limits: limits.into(),
+            periods: Periods::default(),
+            miss: PoseMiss::None,
+            bridged: None,
+            clock: Clock::new(),
+            epoch: 0,
+            window: VecDeque::new(),
+            begun: false,
+            gave_up: false,
+        }
+    }
+
+    /// Why the last time that was asked for has no pose.
+    pub fn miss(&self) -> PoseMiss {
+        self.miss
+    }
+
+    /// Longest time in nanoseconds between poses that were used though they are farther apart than usual, and the farthest step
+    /// between such poses.
+    pub fn bridged(&self) -> Option<(u64, Step)> {
+        self.bridged
     }
 
     /// Clock resets in the poses read so far.
@@ -153,11 +184,11 @@ impl<P: PoseStream> Track<P> {
         self.gave_up = !reached;
         let next = self.window.partition_point(|waypoint| waypoint.key() < (epoch, t));
         let pose = self.interpolate(next, epoch, t);
-        if pose.is_some() {
+        if pose.is_ok() {
             self.begun = true;
             self.window.drain(..next.saturating_sub(1));
         }
-        Ok(pose)
+        Ok(pose.map_err(|miss| self.miss = miss).ok())
     }
 
     /// Reads until there is a pose at or after `key`; `false` where that is beyond the lookahead.
@@ -178,18 +209,23 @@ impl<P: PoseStream> Track<P> {
     }
 
     /// Between the pose of this index in the window and the one before it.
-    fn interpolate(&self, next: usize, epoch: u32, t: i64) -> Option<Pose> {
-        let after = self.window.get(next).filter(|after| after.epoch == epoch)?;
-        if after.t == t {
-            return Some(after.pose);
+    fn interpolate(&mut self, next: usize, epoch: u32, t: i64) -> Result<Pose, PoseMiss> {
+        let of_epoch = |index: usize| self.window.get(index).filter(|waypoint| waypoint.epoch == epoch);
+        let (before, after) = (next.checked_sub(1).and_then(of_epoch), of_epoch(next));
+        let (before, after) = match (before, after) {
+            (_, Some(after)) if after.t == t => return Ok(after.pose),
+            (Some(before), Some(after)) => (*before, *after),
+            (Some(before), None) => return Err(PoseMiss::After(t.abs_diff(before.t))),
+            (None, Some(after)) => return Err(PoseMiss::Before(t.abs_diff(after.t))),
+            (None, None) => return Err(PoseMiss::None),
+        };
+        let at = Between { since: t.abs_diff(before.t), until: after.t.abs_diff(t) };
+        let step = before.pose.step_to(&after.pose);
+        if self.limits.check(at, step, &self.periods)? {
+            Step::note(&mut self.bridged, after.t.abs_diff(before.t), step);
         }
-        let before = self.window.get(next.checked_sub(1)?).filter(|before| before.epoch == epoch)?;
-        let (since, until) = (t.abs_diff(before.t), after.t.abs_diff(t));
-        if since > self.max_gap || until > self.max_gap {
-            return None;
-        }
-        let share = since as f64 / after.t.abs_diff(before.t) as f64;
-        before.pose.towards(after.pose, share)
+        let share = at.since as f64 / after.t.abs_diff(before.t) as f64;
+        before.pose.towards(after.pose, share).ok_or(PoseMiss::None)
     }
 
     /// The next pose in time order.
@@ -197,9 +233,15 @@ impl<P: PoseStream> Track<P> {
         while let Some(StampedPose { t, pose, place }) = self.stream.next_pose(problems)? {
             let latest = self.clock.now();
             match self.clock.admit(t) {
-                Tick::Forward => return Ok(Some(Waypoint { epoch: self.epoch, t, pose })),
+                Tick::Forward => {
+                    self.periods.tick(t);
+                    return Ok(Some(Waypoint { epoch: self.epoch, t, pose }));
+                }
                 Tick::Backward => {}
-                Tick::Reset => self.epoch = self.epoch.saturating_add(1),
+                Tick::Reset => {
+                    self.periods.restart();
+                    self.epoch = self.epoch.saturating_add(1);
+                }
             }
             problems(time_backwards(t, latest, place));
         }
@@ -222,8 +264,14 @@ pub fn time_backwards(t: i64, latest: Option<i64>, place: Place) -> Problem {
 }
 
 impl Pose {
+    /// The way to another, turning the shorter way.
+    pub fn step_to(&self, other: &Self) -> Step {
+        let turn = libm::remainder(other.yaw - self.yaw, TAU).abs();
+        Step { distance: libm::hypot(other.x - self.x, other.y - self.y), turn }
+    }
+
     /// The pose this share of the way to another, `share` in [0, 1]; `None` where the poses are too far apart for an `f64`.
-    fn towards(self, other: Self, share: f64) -> Option<Self> {
+    pub(crate) fn towards(self, other: Self, share: f64) -> Option<Self> {
         // The remainder is exact, and within ±half a turn: the shorter way.
         let turn = libm::remainder(other.yaw - self.yaw, TAU);
         let pose = Self {

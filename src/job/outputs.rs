@@ -39,13 +39,32 @@ impl Written {
         }
     }
 
+    /// The file, with all that goes into it; `None` where its writer has ended already.
+    fn into_output(self) -> Result<Option<Output>> {
+        match self {
+            Self::Echoes(table) => table.into_output(),
+            Self::Crossings(table) => table.into_output(),
+            Self::Recording(recording) => recording.finish().map(Some),
+        }
+    }
+
     /// Puts the file under its name.
     fn commit(self) -> Result<()> {
-        match self {
-            Self::Echoes(table) => table.commit(),
-            Self::Crossings(table) => table.commit(),
-            Self::Recording(recording) => recording.finish()?.commit(),
+        self.into_output()?.map_or(Ok(()), Output::commit)
+    }
+
+    /// Takes a file back; a pipe is ended as usual.
+    fn take_back(self) -> Result<()> {
+        match self.into_output()? {
+            Some(output) if output.partial_path().is_none() => output.commit(),
+            Some(output) => output.discard(),
+            None => Ok(()),
         }
+    }
+
+    /// Leaves nothing behind, in a pipe neither.
+    fn discard(self) -> Result<()> {
+        self.into_output()?.map_or(Ok(()), Output::discard)
     }
 }
 
@@ -65,11 +84,9 @@ impl<R: Line + Send + 'static> Table<R> {
         work(&mut self.rows).map_err(|source| Error::Io { file: Arc::clone(&self.name), source })
     }
 
-    fn commit(self) -> Result<()> {
-        match self.rows.into_table().map_err(|source| Error::Io { file: self.name, source })? {
-            Some(table) => table.into_inner().commit(),
-            None => Ok(()),
-        }
+    fn into_output(self) -> Result<Option<Output>> {
+        let table = self.rows.into_table().map_err(|source| Error::Io { file: self.name, source })?;
+        Ok(table.map(TableWriter::into_inner))
     }
 }
 
@@ -94,6 +111,8 @@ pub(super) struct Outputs {
     passes: bool,
     /// The log's own frames were taken over.
     adopted: bool,
+    /// Nothing goes out before there is a record: of a recording of which nothing can be used no header is left.
+    waits: bool,
 }
 
 impl Outputs {
@@ -138,6 +157,7 @@ impl Outputs {
             mounts: input.mounts.clone(),
             passes: job.passthrough,
             adopted: false,
+            waits: input.window.is_some(),
         })
     }
 
@@ -165,9 +185,24 @@ impl Outputs {
         self.partials.clone()
     }
 
+    /// Whether nothing of a recording was written.
+    pub(super) const fn is_blank(&self) -> bool {
+        self.waits
+    }
+
+    /// Leaves no file: nothing of the log could be used.
+    pub(super) fn discard(self) -> Result<()> {
+        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::discard)
+    }
+
     /// Puts the files under their names.
     pub(super) fn commit(self) -> Result<()> {
         self.crossings.into_iter().chain(self.echoes).try_for_each(Written::commit)
+    }
+
+    /// Leaves no file: nothing of the log could be used. A pipe is ended as usual.
+    pub(super) fn take_back(self) -> Result<()> {
+        self.crossings.into_iter().chain(self.echoes).try_for_each(Written::take_back)
     }
 
     /// Takes over what the log calls its frames, and leaves out the transforms that it has itself where it is copied.
@@ -213,6 +248,7 @@ impl EchoSink for Outputs {
     }
 
     fn record(&mut self, row: &Row, pose: Pose) -> Result<()> {
+        self.waits = false;
         if let (Some(frames), false) = (&row.frames, self.adopted) {
             self.adopt(frames);
         }
@@ -249,6 +285,9 @@ impl EchoSink for Outputs {
     }
 
     fn flush(&mut self) -> Result<()> {
+        if self.waits {
+            return Ok(());
+        }
         self.all().try_for_each(Written::flush)
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Progress;
 use crate::{
+    diagnose::Diagnosis,
     error::{Error, Problem, Result},
     log::{Next, Row, Source},
 };
@@ -74,5 +75,9 @@ impl Source for Watched<'_, '_> {
 
     fn ids(&self) -> &[Arc<str>] {
         self.log.ids()
+    }
+
+    fn diagnoses(&self) -> Vec<Diagnosis> {
+        self.log.diagnoses()
     }
 }

@@ -11,7 +11,10 @@ use std::{
 };
 
 use super::{Next, Row, Source};
-use crate::error::{Error, Problem, Result};
+use crate::{
+    diagnose::Diagnosis,
+    error::{Error, Problem, Result},
+};
 
 /// Records that are handed over together, at most.
 const RECORDS: usize = 256;
@@ -42,6 +45,8 @@ struct Batch {
     drained: bool,
     /// Why there are no more entries.
     failed: Option<Error>,
+    /// With the last one: what the source found out.
+    found: Vec<Diagnosis>,
 }
 
 /// A source that reads ahead of its caller: the same records, problems and errors in the same order.
@@ -58,6 +63,8 @@ pub struct Ahead {
     known: usize,
     position: u64,
     has_poses: bool,
+    /// What the source found out, once it has ended.
+    found: Vec<Diagnosis>,
     ended: bool,
 }
 
@@ -78,7 +85,7 @@ impl Ahead {
             .map_err(no_thread)?;
         let batch = Batch { drained, ..Batch::default() };
         let worker = Some(worker);
-        Ok(Self { full, empty, worker, batch, at: 0, ids, known, position, has_poses, ended: false })
+        Ok(Self { full, empty, worker, batch, at: 0, ids, known, position, has_poses, found: Vec::new(), ended: false })
     }
 
     /// Waits for the next batch; the one that is used up goes back.
@@ -91,6 +98,7 @@ impl Ahead {
                 if let Some(ids) = self.batch.ids.take() {
                     self.ids = ids;
                 }
+                self.found.append(&mut self.batch.found);
             }
             // The thread sends the log's end, or an error, before it ends: it must have panicked.
             Err(_) => match self.worker.take().map(JoinHandle::join) {
@@ -112,6 +120,9 @@ fn read(mut source: impl Source, live: bool, full: &SyncSender<Batch>, empty: &R
     loop {
         let mut batch = empty.try_recv().unwrap_or_default();
         let more = batch.fill(&mut source, live);
+        if !more {
+            batch.found = source.diagnoses();
+        }
         if source.ids().len() > told {
             told = source.ids().len();
             batch.ids = Some(source.ids().to_vec());
@@ -198,6 +209,10 @@ impl Source for Ahead {
 
     fn ids(&self) -> &[Arc<str>] {
         self.ids.get(..self.known).unwrap_or(&self.ids)
+    }
+
+    fn diagnoses(&self) -> Vec<Diagnosis> {
+        self.found.clone()
     }
 }
 

@@ -7,7 +7,7 @@ use super::table::{Record, Table};
 use crate::{
     error::{Problem, Reason},
     track::Pose,
-    units::Scale,
+    units::{self, Scale, UnitError},
 };
 
 /// Most characters of a cell that a message shows.
@@ -109,6 +109,67 @@ pub(super) fn scaled(raw: f64, scale: Scale) -> Option<f64> {
     (value.is_finite() || !raw.is_finite()).then_some(value)
 }
 
+/// Whether a text is a number with a unit behind it: `551cm`, `-3.5 deg`.
+pub(super) fn is_measured(text: &str) -> bool {
+    let (first, last) = (text.bytes().next(), text.bytes().next_back());
+    first.is_some_and(|byte| byte.is_ascii_digit() || b"+-.".contains(&byte))
+        && last.is_some_and(|byte| byte.is_ascii_alphabetic())
+}
+
+/// A quantity as a cell of a table may hold it: a number in the table's unit, or one with a unit of its own.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Quantity {
+    /// The table's unit.
+    pub scale: Scale,
+    /// Reads a number with a unit.
+    own: fn(&str) -> Result<f64, UnitError>,
+    /// A comma is a decimal point: it does not separate cells.
+    pub comma: bool,
+}
+
+impl Quantity {
+    pub(super) fn length(scale: Scale, comma: bool) -> Self {
+        Self { scale, own: units::length, comma }
+    }
+
+    pub(super) fn angle(scale: Scale, comma: bool) -> Self {
+        Self { scale, own: units::angle, comma }
+    }
+
+    /// The number as it stands in the cell; `None` where it is none, or has a unit.
+    #[inline]
+    pub(super) fn raw(&self, cell: &[u8]) -> Option<f64> {
+        number(cell).or_else(|| self.with_comma(cell))
+    }
+
+    #[cold]
+    fn with_comma(&self, cell: &[u8]) -> Option<f64> {
+        let at = cell.iter().position(|byte| *byte == b',').filter(|_| self.comma && !cell.contains(&b'.'))?;
+        let mut cell = cell.to_vec();
+        *cell.get_mut(at)? = b'.';
+        number(&cell)
+    }
+
+    /// The quantity in SI; `None` where the cell holds none, or one too large.
+    #[inline]
+    pub(super) fn read(&self, cell: &[u8]) -> Option<f64> {
+        match self.raw(cell) {
+            Some(raw) => scaled(raw, self.scale),
+            None => self.measured(cell),
+        }
+    }
+
+    /// The quantity of a cell with a unit.
+    #[cold]
+    pub(super) fn measured(&self, cell: &[u8]) -> Option<f64> {
+        let text = std::str::from_utf8(cell).ok().filter(|text| is_measured(text))?;
+        if self.comma && text.contains(',') && !text.contains('.') {
+            return (self.own)(&text.replacen(',', ".", 1)).ok();
+        }
+        (self.own)(text).ok()
+    }
+}
+
 /// Refuses a record that ends before the last of `needed` columns.
 #[inline]
 pub fn check_width(table: &Table, needed: usize) -> Result<Record<'_>, Fault> {
@@ -130,14 +191,19 @@ pub(super) struct PoseCells {
     pub x: usize,
     pub y: usize,
     pub yaw: usize,
-    pub length: Scale,
-    pub angle: Scale,
+    pub length: Quantity,
+    pub angle: Quantity,
 }
 
 impl PoseCells {
     /// Number of columns a record must have to hold the pose.
     pub(super) fn width(&self) -> usize {
         1 + self.x.max(self.y).max(self.yaw)
+    }
+
+    /// Whether the record has nothing in all three: of another table, joined with this one.
+    pub(super) fn are_blank(&self, record: Record<'_>) -> bool {
+        [self.x, self.y, self.yaw].iter().all(|column| record.get(*column).is_some_and(<[u8]>::is_empty))
     }
 
     #[inline]
@@ -181,9 +247,9 @@ impl LastPose {
 
 /// One finite number of a pose.
 #[inline]
-pub(super) fn coordinate(record: Record<'_>, index: usize, column: &str, scale: Scale) -> Result<f64, Fault> {
+pub(super) fn coordinate(record: Record<'_>, index: usize, column: &str, as_a: Quantity) -> Result<f64, Fault> {
     let cell = record.get(index).unwrap_or_default();
-    match number(cell).and_then(|raw| scaled(raw, scale)) {
+    match as_a.read(cell) {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(Fault::cell(Reason::BadPose, column, cell)),
         None => Err(Fault::cell(Reason::BadNumber, column, cell)),

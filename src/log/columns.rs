@@ -5,7 +5,7 @@ use crate::{
     rig::TableFormat,
 };
 
-use super::cell::PoseCells;
+use super::cell::{PoseCells, Quantity};
 
 /// Most columns that a message lists.
 const LISTED: usize = 24;
@@ -16,11 +16,17 @@ const NAME_SHOWN: usize = 40;
 pub struct Columns {
     names: Vec<String>,
     place: Place,
+    /// Commas do not separate cells: they are decimal points.
+    pub(super) comma: bool,
 }
 
 impl Columns {
     /// Reads the header, or takes the names the format gives; where it gives names and has a header, the names count.
     pub fn read(table: &mut Table, format: &TableFormat) -> Result<Self> {
+        let commented = if format.header && format.columns.is_none() { commented_header(table)? } else { None };
+        if let Some(names) = commented {
+            return Ok(Self { names, place: table.place(), comma: table.delimiter() != b',' });
+        }
         if format.header {
             let mut too_long = None;
             match table.next_record(&mut |problem| too_long = Some(problem.value))? {
@@ -36,7 +42,7 @@ impl Columns {
             (None, true) => table.record().fields().map(|name| String::from_utf8_lossy(name).into_owned()).collect(),
             (None, false) => return Err(table.format_error("a table without a header needs the names of its columns")),
         };
-        Ok(Self { names, place: table.place() })
+        Ok(Self { names, place: table.place(), comma: table.delimiter() != b',' })
     }
 
     /// The names in order.
@@ -62,7 +68,8 @@ impl Columns {
     pub(super) fn pose(&self, format: &TableFormat) -> Result<Result<PoseCells, Vec<&'static str>>> {
         let found = [("x", self.find("x")?), ("y", self.find("y")?), ("yaw", self.find("yaw")?)];
         if let [(_, Some(x)), (_, Some(y)), (_, Some(yaw))] = found {
-            return Ok(Ok(PoseCells { x, y, yaw, length: format.pose, angle: format.yaw }));
+            let (length, angle) = (Quantity::length(format.pose, self.comma), Quantity::angle(format.yaw, self.comma));
+            return Ok(Ok(PoseCells { x, y, yaw, length, angle }));
         }
         Ok(Err(found.into_iter().filter(|(_, at)| at.is_none()).map(|(name, _)| name).collect()))
     }
@@ -78,6 +85,23 @@ impl Columns {
         };
         Error::Format { place: self.place.clone(), message: format!("{message}; the columns are: {listed}{hint}") }
     }
+}
+
+/// The names in the comment right above a first record that has none, as `numpy.savetxt` writes its header: as many as the record
+/// has fields, the time `t` among them.
+fn commented_header(table: &mut Table) -> Result<Option<Vec<String>>> {
+    let delimiter = table.delimiter();
+    let fields = |line: &[u8]| -> Vec<Vec<u8>> {
+        let cells = line.split(|byte| *byte == delimiter || (delimiter == b' ' && *byte == b'\t'));
+        let cells = cells.map(|cell| cell.trim_ascii().to_vec());
+        cells.filter(|cell| delimiter != b' ' || !cell.is_empty()).collect()
+    };
+    let first = fields(table.first_line()?);
+    // A first record that names the time is the header.
+    let is_header = first.iter().any(|cell| cell == b"t");
+    let Some(names) = table.comment().filter(|_| !is_header && first.len() > 1).map(fields) else { return Ok(None) };
+    let names: Vec<String> = names.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect();
+    Ok((names.len() == first.len() && names.iter().any(|name| name == "t")).then_some(names))
 }
 
 /// Names in a row, long ones and many of them cut short.

@@ -8,14 +8,15 @@ use std::{
 
 use super::{
     Input, Next, Row, Source,
-    cell::{Fault, LastPose, PoseCells, check_width, number, scaled},
+    cell::{Fault, LastPose, PoseCells, Quantity, check_width, coordinate, scaled, shorten},
     columns::{Columns, list},
     table::{Record, Table},
+    times::Times,
 };
 use crate::{
+    diagnose::Diagnosis,
     error::{Problem, Reason, Result},
     rig::{Rig, TableFormat},
-    stamp,
 };
 
 /// Longest sensor id that [`Discover`] takes, in bytes.
@@ -105,7 +106,8 @@ impl SensorNames for Discover {
 /// Where the ranges stand.
 enum Layout {
     Long {
-        sensor: usize,
+        /// `None`: the only sensor's.
+        sensor: Option<usize>,
         range: usize,
     },
     /// Sensor and column, in the order of the columns.
@@ -118,7 +120,11 @@ pub struct CsvReadings<N> {
     format: TableFormat,
     columns: Columns,
     time: usize,
+    times: Times,
+    range: Quantity,
     pose: Option<PoseCells>,
+    /// The column of the angle by which sensors are turned on their mounts.
+    angle: Option<(usize, Quantity)>,
     layout: Layout,
     /// Number of columns a record must have.
     width: usize,
@@ -127,6 +133,17 @@ pub struct CsvReadings<N> {
     /// Where the next record's sensor is looked for first: sensors mostly take turns.
     turn: usize,
     last_pose: LastPose,
+    /// The first record may be the rest of a line, and was or will be left out.
+    first_line: FirstLine,
+}
+
+/// The first record of a source that was joined midway.
+enum FirstLine {
+    Trusted,
+    /// It is yet to come.
+    Awaited,
+    /// It was left out.
+    LeftOut(String),
 }
 
 impl<N: SensorNames> CsvReadings<N> {
@@ -158,26 +175,41 @@ impl<N: SensorNames> CsvReadings<N> {
                 }
             },
         };
+        let angle = angle(&columns, format)?;
         let ranges = match &layout {
-            Layout::Long { sensor, range } => *sensor.max(range),
+            Layout::Long { sensor, range } => sensor.unwrap_or(0).max(*range),
             Layout::Wide(sensors) => sensors.iter().map(|(_, column)| *column).max().unwrap_or(0),
         };
+        let ranges = ranges.max(angle.map_or(0, |(column, _)| column));
         let width = (1 + time.max(ranges)).max(pose.map_or(0, |pose| pose.width()));
         let default = if matches!(layout, Layout::Long { .. }) { EmptyCell::NoEcho } else { EmptyCell::Skip };
         let empty = empty.unwrap_or(default);
         Ok(Self {
             table,
             format: format.clone(),
+            times: Times::new(format.time_shift, columns.comma),
+            range: Quantity::length(format.range, columns.comma),
             columns,
             time,
             pose,
+            angle,
             layout,
             width,
             empty,
             names,
             turn: 0,
             last_pose: LastPose::default(),
+            first_line: FirstLine::Trusted,
         })
+    }
+
+    /// The table comes from a source that runs already: without a header its first line, which may be the rest of one or two
+    /// halves glued together, is left out.
+    pub fn joined_midway(mut self) -> Self {
+        if !self.format.header {
+            self.first_line = FirstLine::Awaited;
+        }
+        self
     }
 
     /// The sensors' names.
@@ -194,11 +226,21 @@ impl<N: SensorNames> CsvReadings<N> {
     fn read_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<(), Fault> {
         let record = check_width(&self.table, self.width)?;
         let time = record.get(self.time).unwrap_or_default();
-        row.t = stamp::parse(time, self.format.time_shift).ok_or_else(|| Fault::cell(Reason::BadNumber, "t", time))?;
+        row.t = self.times.read(time).ok_or_else(|| Fault::cell(Reason::BadNumber, "t", time))?;
         row.log_time = row.t;
-        row.pose = self.pose.as_ref().map(|cells| self.last_pose.read(cells, record)).transpose()?;
+        // A record without a pose is of another table, joined with that of the poses.
+        let cells = self.pose.as_ref().filter(|cells| !cells.are_blank(record));
+        row.pose = cells.map(|cells| self.last_pose.read(cells, record)).transpose()?;
+        row.angle = match &self.angle {
+            Some((column, as_a)) => coordinate(record, *column, self.columns.name(*column), *as_a)?,
+            None => 0.0,
+        };
         match &self.layout {
-            Layout::Long { sensor, range } => {
+            // A record of a pose alone.
+            Layout::Long { sensor: Some(sensor), range }
+                if row.pose.is_some() && [sensor, range].iter().all(|column| is_empty(record, **column)) => {}
+            Layout::Long { sensor: None, range } => row.add(0, self.range(record, *range)?),
+            Layout::Long { sensor: Some(sensor), range } => {
                 let range = self.range(record, *range)?;
                 // Looked up last: a record with a bad number makes no sensor known.
                 let id = record.get(*sensor).unwrap_or_default();
@@ -225,15 +267,29 @@ impl<N: SensorNames> CsvReadings<N> {
         if cell.is_empty() {
             return Ok((self.empty == EmptyCell::NoEcho).then_some(f64::NAN));
         }
-        let range = number(cell).and_then(|raw| {
+        let range = match self.range.raw(cell) {
             // The values that stand for "no echo" are in the units of the file.
-            if self.format.no_echo.contains(&raw) { Some(f64::INFINITY) } else { scaled(raw, self.format.range) }
-        });
+            Some(raw) if self.format.no_echo.contains(&raw) => Some(f64::INFINITY),
+            Some(raw) => scaled(raw, self.format.range),
+            None => self.range.measured(cell),
+        };
         match range {
             Some(range) => Ok(Some(range)),
             None => Err(Fault::cell(Reason::BadNumber, self.columns.name(column), cell)),
         }
     }
+}
+
+fn is_empty(record: Record<'_>, column: usize) -> bool {
+    record.get(column).is_none_or(<[u8]>::is_empty)
+}
+
+/// The column of the angle by which sensors are turned on their mounts, where the format names one.
+fn angle(columns: &Columns, format: &TableFormat) -> Result<Option<(usize, Quantity)>> {
+    let Some(name) = &format.angle else { return Ok(None) };
+    let column =
+        columns.find(name)?.ok_or_else(|| columns.error(&format!("no column `{name}` of the sensors' angle")))?;
+    Ok(Some((column, Quantity::angle(format.angle_unit, columns.comma))))
 }
 
 /// The index of the sensor named in a cell; `turn` says where to look first, and is left at the one after it.
@@ -262,11 +318,15 @@ impl Row {
 impl<N: SensorNames> Source for CsvReadings<N> {
     fn next_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Next> {
         row.readings.clear();
-        row.pose = None;
-        row.empty = 0;
+        (row.pose, row.empty, row.angle) = (None, 0, 0.0);
         let next = self.table.next_record(problems)?;
         if next != Next::Record {
             return Ok(next);
+        }
+        if matches!(self.first_line, FirstLine::Awaited) {
+            let cells: Vec<&[u8]> = self.table.record().fields().collect();
+            self.first_line = FirstLine::LeftOut(shorten(&cells.join(&self.table.delimiter())));
+            return Ok(Next::Unusable);
         }
         self.table.write_place(&mut row.place);
         if let Err(fault) = self.read_row(row, problems) {
@@ -293,6 +353,13 @@ impl<N: SensorNames> Source for CsvReadings<N> {
     fn ids(&self) -> &[Arc<str>] {
         self.names.ids()
     }
+
+    fn diagnoses(&self) -> Vec<Diagnosis> {
+        match &self.first_line {
+            FirstLine::LeftOut(line) => vec![Diagnosis::FirstLine { line: line.clone() }],
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Finds out the layout, and the column of the time.
@@ -300,7 +367,9 @@ fn layout(columns: &Columns, names: &mut impl SensorNames) -> Result<(usize, Lay
     let known = names.known().map(<[_]>::to_vec);
     let (sensor, range) = (columns.find("sensor")?, columns.find("range")?);
     let layout = match (sensor, range) {
-        (Some(sensor), Some(range)) => Layout::Long { sensor, range },
+        (Some(_), Some(range)) => Layout::Long { sensor, range },
+        // The readings of the rig's only sensor need not name it.
+        (None, Some(range)) if known.as_ref().is_some_and(|ids| ids.len() == 1) => Layout::Long { sensor: None, range },
         // One of the two alone is a sensor of that name, if the rig has it; else the other one is missing.
         (Some(_), None) if !is_known(&known, "sensor") => return Err(columns.error("no column `range`")),
         (None, Some(_)) if !is_known(&known, "range") => return Err(columns.error("no column `sensor`")),
@@ -333,7 +402,8 @@ fn wide(columns: &Columns, names: &mut impl SensorNames, known: Option<Vec<Arc<s
         }
     }
     if sensors.is_empty() {
-        let message = "neither a long table (`t`, `sensor`, `range`) nor a wide one (`t` and a column per sensor)";
+        let message = "neither a long table (`t`, `sensor`, `range`) nor a wide one (`t` and a column per sensor); the rig's [log] \
+                       names columns otherwise, in their order: columns = [\"t\", \"sensor\", \"range\", …]";
         return Err(columns.error(message));
     }
     let missing: Vec<_> = known.iter().flatten().filter(|id| !found.contains(&***id)).collect();

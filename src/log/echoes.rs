@@ -102,7 +102,7 @@ impl<W: Write> TableWriter<W> {
     pub fn echo(&mut self, echo: &AnyEcho) -> io::Result<()> {
         let usual = echo.usual();
         self.row.clear();
-        stamp::write(usual.t, &mut self.row);
+        stamp::write_decimal(usual.t, &mut self.row);
         self.id(usual.sensor);
         self.float(usual.position.x);
         self.float(usual.position.y);
@@ -132,10 +132,10 @@ impl<W: Write> TableWriter<W> {
     /// Writes one crossing.
     pub fn crossing(&mut self, crossing: &ArcCrossing<f64>) -> io::Result<()> {
         self.row.clear();
-        stamp::write(crossing.t, &mut self.row);
+        stamp::write_decimal(crossing.t, &mut self.row);
         self.id(crossing.sensor);
         self.row.push(b',');
-        stamp::write(crossing.t_other, &mut self.row);
+        stamp::write_decimal(crossing.t_other, &mut self.row);
         self.id(crossing.sensor_other);
         self.float(crossing.position.x);
         self.float(crossing.position.y);

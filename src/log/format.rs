@@ -8,6 +8,11 @@ use crate::error::{Error, Result};
 /// The first bytes of an MCAP file (mcap.dev/spec).
 pub const MCAP_MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
 
+/// What zstd's files begin with (RFC 8878).
+const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+/// Largest window of a compressed file, as a power of two: 128 MiB, as the command zstd takes it.
+const WINDOW_LOG_MAX: u32 = 27;
+
 /// The formats that can be told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -33,12 +38,39 @@ impl Format {
     }
 }
 
+/// What a file is by its first bytes.
+fn format_of(start: &[u8]) -> Format {
+    if start == MCAP_MAGIC { Format::Mcap } else { Format::Csv }
+}
+
 impl Input {
     /// What the first bytes say it is; they are still there to be read.
     ///
     /// # Errors
     /// The file can't be read.
-    pub fn sniff(mut self) -> Result<(Format, Self)> {
+    pub fn sniff(self) -> Result<(Format, Self)> {
+        let (start, input) = self.start()?;
+        if start.get(..ZSTD_MAGIC.len()) == Some(&ZSTD_MAGIC) {
+            let (start, input) = input.unpacked()?.start()?;
+            return Ok((format_of(&start), input));
+        }
+        Ok((format_of(&start), input))
+    }
+
+    /// What it holds, unpacked as it is read: it is compressed by zstd as a whole.
+    fn unpacked(self) -> Result<Self> {
+        let Self { reader, name, .. } = self;
+        let decoder = zstd::Decoder::new(reader).and_then(|mut decoder| {
+            decoder.window_log_max(WINDOW_LOG_MAX)?;
+            Ok(decoder)
+        });
+        let decoder = decoder.map_err(|source| Error::Io { file: name.clone(), source })?;
+        // How long it is, and where in it something stands, is not known before it is read.
+        Ok(Self { reader: Box::new(decoder), name, length: None })
+    }
+
+    /// Its first bytes, which are still there to be read.
+    fn start(mut self) -> Result<(Vec<u8>, Self)> {
         let mut start = Vec::with_capacity(MCAP_MAGIC.len());
         let magic = MCAP_MAGIC.len() as u64;
         let mut reader = self.reader;
@@ -47,9 +79,8 @@ impl Input {
             .take(magic)
             .read_to_end(&mut start)
             .map_err(|source| Error::Io { file: self.name.clone(), source })?;
-        let format = if start == MCAP_MAGIC { Format::Mcap } else { Format::Csv };
-        self.reader = Box::new(Cursor::new(start).chain(reader)) as Box<dyn io::Read + Send>;
-        Ok((format, self))
+        self.reader = Box::new(Cursor::new(start.clone()).chain(reader)) as Box<dyn io::Read + Send>;
+        Ok((start, self))
     }
 
     /// What it is by its first bytes; what was cut off before it could say goes by its name, which is `path`.

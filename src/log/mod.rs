@@ -12,12 +12,16 @@ pub mod echo_log;
 pub mod echo_table;
 pub mod echoes;
 pub mod format;
+pub mod joined;
 mod line;
 pub mod mcap;
 pub mod output;
+pub(crate) mod plausible;
 pub mod poses;
 mod record;
+pub mod sorted;
 pub mod table;
+mod times;
 pub mod writer;
 
 use std::{fs, io, sync::Arc};
@@ -25,6 +29,7 @@ use std::{fs, io, sync::Arc};
 use atm_core::{Beam, Isometry2, Limits, RangeResolution};
 
 use crate::{
+    diagnose::Diagnosis,
     error::{Error, Place, Problem, Result},
     track::Pose,
 };
@@ -76,6 +81,8 @@ pub struct Row {
     pub log_time: i64,
     /// Pose in the log's fixed frame; `None` where the poses aren't taken from this log.
     pub pose: Option<Pose>,
+    /// By how much the sensors are turned on their mounts, in radians: those of a servo.
+    pub angle: f64,
     /// Sensor index and range in metres, in the order of the log. NaN and ±Inf are readings without an echo.
     pub readings: Vec<(u16, f64)>,
     /// One for each of `readings` where the log says itself where its sensors were and what they saw; else empty, and that
@@ -92,7 +99,17 @@ pub struct Row {
 impl Default for Row {
     fn default() -> Self {
         let place = Place { file: Arc::from(""), line: 0, byte: 0 };
-        Self { t: 0, log_time: 0, pose: None, readings: Vec::new(), views: Vec::new(), frames: None, empty: 0, place }
+        Self {
+            t: 0,
+            log_time: 0,
+            pose: None,
+            angle: 0.0,
+            readings: Vec::new(),
+            views: Vec::new(),
+            frames: None,
+            empty: 0,
+            place,
+        }
     }
 }
 
@@ -115,6 +132,11 @@ pub trait Source {
 
     /// The ids of the sensors known so far, in order of their indices; more may become known with any record.
     fn ids(&self) -> &[Arc<str>];
+
+    /// What the format itself finds likely to be wrong, once the log is read.
+    fn diagnoses(&self) -> Vec<Diagnosis> {
+        Vec::new()
+    }
 }
 
 /// A file (or standard input) that was opened for reading.
@@ -132,7 +154,7 @@ impl Input {
     pub fn open(path: &str) -> Result<Self> {
         if path == "-" {
             let name = Arc::from("standard input");
-            return Ok(Self { reader: Box::new(io::stdin()), name, length: None });
+            return Ok(Self { reader: Box::new(io::stdin()), name, length: length_of_standard_input() });
         }
         let name: Arc<str> = Arc::from(path);
         let failed = |source| Error::Io { file: name.clone(), source };
@@ -144,6 +166,19 @@ impl Input {
         let length = metadata.is_file().then_some(metadata.len());
         Ok(Self { reader: Box::new(file), name, length })
     }
+}
+
+/// The length of standard input where a regular file was put there, which nobody writes to meanwhile.
+#[cfg(unix)]
+fn length_of_standard_input() -> Option<u64> {
+    use std::os::fd::AsFd;
+    let file = fs::File::from(io::stdin().as_fd().try_clone_to_owned().ok()?);
+    file.metadata().ok().filter(fs::Metadata::is_file).map(|metadata| metadata.len())
+}
+
+#[cfg(not(unix))]
+fn length_of_standard_input() -> Option<u64> {
+    None
 }
 
 #[cfg(test)]

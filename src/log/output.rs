@@ -116,6 +116,21 @@ impl Output {
         self.finish().map_err(|source| Error::Io { file: self.name.clone(), source })
     }
 
+    /// Throws away what was not written yet, and removes the partial file: there is nothing to be had.
+    ///
+    /// # Errors
+    /// The partial file can't be removed.
+    pub fn discard(self) -> Result<()> {
+        // Taken apart, so that nothing of what is gathered goes out.
+        let (_sink, _gathered) = self.sink.into_parts();
+        match &self.pending {
+            Some(pending) => {
+                fs::remove_file(&pending.partial).map_err(|source| Error::Io { file: self.name.clone(), source })
+            }
+            None => Ok(()),
+        }
+    }
+
     fn finish(&mut self) -> io::Result<()> {
         self.sink.flush()?;
         let (Some(pending), Sink::File(file)) = (&self.pending, self.sink.get_ref()) else {

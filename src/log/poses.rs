@@ -1,14 +1,14 @@
 //! Trajectory files: CSV `t,x,y,yaw`, or TUM (`t x y z qx qy qz qw`).
 use super::{
     Input, Next,
-    cell::{Fault, PoseCells, check_width, coordinate, number, shorten},
+    cell::{Fault, PoseCells, Quantity, check_width, coordinate, number, shorten},
     columns::{Columns, list},
     table::{Record, Table},
+    times::Times,
 };
 use crate::{
     error::{Problem, Reason, Result},
     rig::TableFormat,
-    stamp,
     track::{Pose, PoseStream, StampedPose},
     units::Scale,
 };
@@ -21,7 +21,7 @@ const SECONDS: i32 = 9;
 
 /// How the poses are written.
 enum Layout {
-    Csv { time: usize, time_shift: i32, pose: PoseCells },
+    Csv { time: usize, pose: PoseCells },
     Tum,
 }
 
@@ -29,6 +29,7 @@ enum Layout {
 pub struct PoseLog {
     table: Table,
     layout: Layout,
+    times: Times,
     /// Number of columns a record must have.
     width: usize,
 }
@@ -45,7 +46,7 @@ impl PoseLog {
         let named = format.columns.as_ref().is_some_and(|columns| columns.len() == TUM_FIELDS);
         if !named && is_tum(table.first_line()?) {
             table.set_delimiter(Some(b' '))?;
-            return Ok(Self { table, layout: Layout::Tum, width: TUM_FIELDS });
+            return Ok(Self { table, layout: Layout::Tum, times: Times::new(SECONDS, false), width: TUM_FIELDS });
         }
         table.set_delimiter(format.delimiter)?;
         let columns = Columns::read(&mut table, format)?;
@@ -53,8 +54,8 @@ impl PoseLog {
         match (time, columns.pose(format)?) {
             (Some(time), Ok(pose)) => {
                 let width = pose.width().max(time + 1);
-                let layout = Layout::Csv { time, time_shift: format.time_shift, pose };
-                Ok(Self { table, layout, width })
+                let times = Times::new(format.time_shift, columns.comma);
+                Ok(Self { table, layout: Layout::Csv { time, pose }, times, width })
             }
             (time, pose) => {
                 let missing = time.is_none().then_some("t").into_iter().chain(pose.err().into_iter().flatten());
@@ -76,20 +77,21 @@ impl PoseLog {
         self.table.position()
     }
 
-    /// Reads the record that is in the table.
-    fn read(&self) -> Result<(i64, Pose), Fault> {
+    /// Reads the record that is in the table; `None` where it has no pose: a table that was joined with one of readings.
+    fn read(&mut self) -> Result<Option<(i64, Pose)>, Fault> {
         let record = check_width(&self.table, self.width)?;
-        let (time, shift) = match self.layout {
-            Layout::Csv { time, time_shift, .. } => (record.get(time), time_shift),
-            Layout::Tum => (record.get(0), SECONDS),
+        let time = match &self.layout {
+            Layout::Csv { pose, .. } if pose.are_blank(record) => return Ok(None),
+            Layout::Csv { time, .. } => record.get(*time),
+            Layout::Tum => record.get(0),
         };
         let time = time.unwrap_or_default();
-        let t = stamp::parse(time, shift).ok_or_else(|| Fault::cell(Reason::BadNumber, "t", time))?;
+        let t = self.times.read(time).ok_or_else(|| Fault::cell(Reason::BadNumber, "t", time))?;
         let pose = match &self.layout {
             Layout::Csv { pose, .. } => pose.read(record)?,
             Layout::Tum => tum_pose(record)?,
         };
-        Ok((t, pose))
+        Ok(Some((t, pose)))
     }
 }
 
@@ -102,7 +104,8 @@ impl PoseStream for PoseLog {
                 Next::Record => {}
             }
             match self.read() {
-                Ok((t, pose)) => return Ok(Some(StampedPose { t, pose, place: self.table.place() })),
+                Ok(Some((t, pose))) => return Ok(Some(StampedPose { t, pose, place: self.table.place() })),
+                Ok(None) => {}
                 Err(fault) => problems(fault.at(&self.table)),
             }
         }
@@ -117,7 +120,9 @@ fn is_tum(line: &[u8]) -> bool {
 
 /// The pose of a TUM record: z is dropped, and so are roll and pitch.
 fn tum_pose(record: Record<'_>) -> Result<Pose, Fault> {
-    let cell = |index: usize| coordinate(record, index, TUM.get(index).copied().unwrap_or_default(), Scale::SI);
+    let cell = |index: usize| {
+        coordinate(record, index, TUM.get(index).copied().unwrap_or_default(), Quantity::length(Scale::SI, false))
+    };
     let (x, y, _) = (cell(1)?, cell(2)?, cell(3)?);
     let (qx, qy, qz, qw) = (cell(4)?, cell(5)?, cell(6)?, cell(7)?);
     let norm = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();

@@ -49,6 +49,8 @@ pub struct Table {
     field_count: usize,
     record_line: u64,
     record_byte: u64,
+    /// The last comment before the first record, without its mark.
+    comment: Option<Vec<u8>>,
     /// After so many reads of the buffer, the file's bytes up to here belong to complete records: see [`Table::drained`].
     complete: Cell<(u64, u64)>,
 }
@@ -72,6 +74,7 @@ impl Table {
             field_count: 0,
             record_line: 1,
             record_byte: 0,
+            comment: None,
             complete: Cell::new((0, 0)),
         };
         table.check_encoding()?;
@@ -94,6 +97,17 @@ impl Table {
             self.buffer.turn_tabs_to_blanks();
         }
         Ok(())
+    }
+
+    /// What separates cells; `b' '` stands for runs of blanks and tabs.
+    pub fn delimiter(&self) -> u8 {
+        self.delimiter
+    }
+
+    /// The comment that was passed over last before the first record, without its mark; `None` without one, or where it is
+    /// longer than a buffer.
+    pub fn comment(&self) -> Option<&[u8]> {
+        self.comment.as_deref()
     }
 
     /// The line of the next record, without using it; as much of it as fits the buffer, and empty at the end of the file.
@@ -250,7 +264,7 @@ impl Table {
         while let Some(byte) = self.buffer.peek()? {
             match byte {
                 b'\n' | b'\r' => self.use_line_end(byte),
-                b'#' => self.skip_line()?,
+                b'#' => self.skip_comment()?,
                 b' ' if self.blanks => self.buffer.use_up(1),
                 _ => {
                     self.after_return = false;
@@ -268,6 +282,19 @@ impl Table {
         }
         self.after_return = byte == b'\r';
         self.buffer.use_up(1);
+    }
+
+    /// Passes over a comment; before the first record it is kept, as it may be the header.
+    fn skip_comment(&mut self) -> Result<()> {
+        if self.field_count > 0 {
+            return self.skip_line();
+        }
+        while memchr2(b'\n', b'\r', self.buffer.rest()).is_none() && self.buffer.fill()? {}
+        let rest = self.buffer.rest();
+        let end = memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
+        let whole = !self.buffer.full() || end < rest.len();
+        self.comment = rest.get(1..end).filter(|_| whole).map(<[u8]>::to_vec);
+        self.skip_line()
     }
 
     /// Passes over the rest of a line, up to its end.

@@ -40,7 +40,7 @@ impl<W: Write> LogWriter<W> for RecordingWriter<W> {
 /// The columns of a log, in order.
 pub const LOG_COLUMNS: &str = "t,sensor,range,x,y,yaw";
 
-/// A log as a long CSV table; floats as the shortest decimals that read back as the same bits.
+/// A log as a long CSV table; floats as the shortest decimals that read back as the same bits, each with a point.
 #[derive(Debug)]
 pub struct CsvLog<W> {
     out: W,
@@ -75,11 +75,11 @@ impl<W: Write> CsvLog<W> {
 impl<W: Write> LogWriter<W> for CsvLog<W> {
     fn sweep(&mut self, t: i64, pose: Pose, readings: &[(u16, f64)]) -> Result<()> {
         for &(sensor, range) in readings {
-            stamp::write(t, &mut self.row);
+            stamp::write_decimal(t, &mut self.row);
             self.row.push(b',');
             self.row.extend_from_slice(self.ids.get(usize::from(sensor)).map_or(&[][..], |id| id));
             // A vector takes whatever is written.
-            let _ = write!(self.row, ",{range},{},{},{}", pose.x, pose.y, pose.yaw);
+            let _ = write!(self.row, ",{range:?},{:?},{:?},{:?}", pose.x, pose.y, pose.yaw);
             self.end()?;
         }
         Ok(())

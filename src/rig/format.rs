@@ -29,6 +29,10 @@ pub struct TableFormat {
     pub yaw: Scale,
     /// Raw ranges that stand for "no echo".
     pub no_echo: Vec<f64>,
+    /// The column of an angle that adds to the yaw of the sensors' mounts: of a servo that pans them.
+    pub angle: Option<String>,
+    /// From raw angles of that column to radians, counter-clockwise.
+    pub angle_unit: Scale,
 }
 
 impl Default for TableFormat {
@@ -42,6 +46,8 @@ impl Default for TableFormat {
             pose: Scale::SI,
             yaw: Scale::SI,
             no_echo: Vec::new(),
+            angle: None,
+            angle_unit: Scale::SI,
         }
     }
 }

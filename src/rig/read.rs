@@ -22,6 +22,10 @@ const RING: [&str; 3] = ["count", "radius", "first_yaw"];
 const SENSOR: [&str; 5] = ["id", "x", "y", "yaw", "topic"];
 const TABLE: [&str; 8] =
     ["header", "delimiter", "columns", "time_unit", "range_unit", "pose_unit", "yaw_unit", "no_echo"];
+/// Of the table of readings alone.
+const PANNING: [&str; 2] = ["angle", "angle_unit"];
+/// Where a sensor sits. One of them is enough: the others are 0 then.
+const MOUNT: [&str; 3] = ["x", "y", "yaw"];
 /// Most values that stand for "no echo": each range is compared with all of them.
 const MAX_NO_ECHO: usize = 1000;
 /// Poses in a file of their own; only under `[log]`.
@@ -38,14 +42,22 @@ pub(super) fn rig(text: &str, file: &str) -> Result<Rig> {
         None => Path::new(file).file_stem().map_or(file.into(), |stem| stem.to_string_lossy()).into_owned(),
     };
     let defaults = ranging(&top, Ranging::default())?;
+    // A limit that is given counts even where it excludes nothing.
+    let given =
+        |sensor: Sensor| sensor.with_given_limits(top.get("min_range").is_some(), top.get("max_range").is_some());
+    let all = |sensors: Vec<Sensor>| sensors.into_iter().map(given).collect();
     let rig = match (top.get("ring"), top.get("sensor")) {
-        (Some(entry), None) => Rig::new(name, ring(&entry.section()?, defaults)?)?,
-        (None, Some(entry)) => Rig::new(name, sensors(&entry, defaults)?)?,
+        (Some(entry), None) => Rig::new(name, all(ring(&entry.section()?, defaults)?))?,
+        (None, Some(entry)) => Rig::new(name, all(sensors(&entry, defaults)?))?,
         (Some(_), Some(second)) => return Err(second.error("a rig has either [ring] or [[sensor]], not both")),
         (None, None) => return Err(top.error("no sensors: expected a [ring] or at least one [[sensor]]".to_owned())),
     };
     Ok(match top.get("log") {
-        Some(log) => rig.with_log(log_formats(&log.section()?)?),
+        Some(log) => {
+            let section = log.section()?;
+            let keys = TABLE.iter().chain([&POSES]).filter(|key| section.get(key).is_some());
+            rig.with_log_keys(keys.map(|key| (*key).to_owned()).collect()).with_log(log_formats(&section)?)
+        }
         None => rig,
     })
 }
@@ -114,7 +126,12 @@ fn sensor<'a>(section: &Section<'a>, defaults: Ranging) -> Result<(Entry<'a>, Se
     }
     let boresight = direction(section.get("yaw").map_or(Ok(0.0), |yaw| yaw.angle())?);
     let mount = Isometry2::from_parts(Translation2::new(length("x")?, length("y")?), boresight);
-    let sensor = Sensor::new(id.text()?, mount, ranging(section, defaults)?)?;
+    let sensor = Sensor::new(id.text()?, mount, ranging(section, defaults)?)?
+        .with_given_limits(section.get("min_range").is_some(), section.get("max_range").is_some());
+    let sensor = match MOUNT.iter().any(|key| section.get(key).is_some()) {
+        true => sensor,
+        false => sensor.with_open_mount(),
+    };
     let sensor = match section.get("topic") {
         Some(topic) => sensor.with_topic(topic.text()?),
         None => sensor,
@@ -124,9 +141,9 @@ fn sensor<'a>(section: &Section<'a>, defaults: Ranging) -> Result<(Entry<'a>, Se
 
 /// Reads `[log]` and `[log.poses]`.
 fn log_formats(section: &Section<'_>) -> Result<LogFormats> {
-    section.only(&[&TABLE, &[POSES]])?;
+    section.only(&[&TABLE, &PANNING, &[POSES]])?;
     let readings = table_format(section, TableFormat::default(), section.get("header"))?;
-    let inherited = TableFormat { columns: None, ..readings.clone() };
+    let inherited = TableFormat { columns: None, angle: None, ..readings.clone() };
     let poses = match section.get(POSES) {
         Some(poses) => {
             let poses = poses.section()?;
@@ -163,6 +180,15 @@ fn table_format(section: &Section<'_>, inherited: TableFormat, header: Option<En
     }
     if let Some(unit) = section.get("yaw_unit") {
         format.yaw = unit.quantity(Scale::angle)?;
+    }
+    if let Some(name) = section.get("angle") {
+        format.angle = Some(name.text()?.to_owned());
+    }
+    if let Some(unit) = section.get("angle_unit") {
+        if format.angle.is_none() {
+            return Err(unit.error("needs `angle`, the column that it is the unit of"));
+        }
+        format.angle_unit = unit.quantity(Scale::angle)?;
     }
     if let Some(values) = section.get("no_echo") {
         format.no_echo = values.items_up_to(MAX_NO_ECHO)?.iter().map(Entry::number).collect::<Result<_>>()?;

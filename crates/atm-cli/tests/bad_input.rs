@@ -23,7 +23,9 @@ fn one_bad_row(row: &str, reason: &str, value: &str) {
     let log = scratch.file("drive.csv", sample_with(row));
     let (ran, summary) = with_summary(&["fuse", &log, "--rig", "nomad200"], "");
     let place = format!("{log}:{LINE} ");
-    let ran = ran.exits(3).says(&[reason, &place, "byte 4", value]);
+    let before: usize = sample().lines().take(LINE - 1).map(|line| line.len() + 1).sum();
+    let byte = format!("(byte {before})");
+    let ran = ran.exits(3).says(&[reason, &place, &byte, value]);
     ran.writes(fuse_sample(&[]).stdout);
     assert_eq!(summary["dropped"], serde_json::json!({ reason: 1 }));
     assert_eq!(tally(&summary, "/readings"), 784);
@@ -127,7 +129,7 @@ fn readings_without_a_pose_near_enough_on_both_sides_are_counted() {
     let (ran, summary) = with_summary(&args, log);
     let times: Vec<String> =
         ran.exits(3).says(&["no_pose", "standard input:2 ", "t 0.9"]).echoes().into_iter().map(|echo| echo.t).collect();
-    assert_eq!(times, ["1", "1.75", "4", "5"]);
+    assert_eq!(times, ["1.0", "1.75", "4.0", "5.0"]);
     assert_eq!(summary["dropped"], serde_json::json!({ "no_pose": 5 }));
     let wider: Vec<&str> = args.into_iter().chain(["--max-gap", "1.5s"]).collect();
     assert_eq!(with_summary(&wider, log).1["dropped"], serde_json::json!({ "no_pose": 2 }));

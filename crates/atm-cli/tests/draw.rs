@@ -86,7 +86,7 @@ fn only_takes_kinds_and_layers() {
 fn the_reading_that_is_shown_has_its_beam_its_partners_and_two_rings() {
     let scratch = Scratch::new();
     let (table, crossings) = fused(&scratch);
-    let partners = read(&crossings).lines().filter(|line| line.starts_with("20,3,")).count();
+    let partners = read(&crossings).lines().filter(|line| line.starts_with("20.0,3,")).count();
     assert!(partners > 2, "the case is empty");
     let drawn =
         svg(&[SAMPLE, &table, &crossings, "--rig", "nomad200", "--reading", "20,3", "--only", "beam,partners,median"]);

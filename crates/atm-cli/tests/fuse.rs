@@ -194,13 +194,14 @@ fn a_rig_file_says_how_a_foreign_table_is_written() {
     let rig = scratch.file("mine.toml", rig);
     let mut table = String::new();
     for sweep in sample_rows().chunks(16) {
-        table += &format!("{}000   {} 0  0", sweep[0].t, 100.0 * number(&sweep[0].x));
+        table += &format!("{}   {} 0  0", 1000.0 * sweep[0].time(), 100.0 * number(&sweep[0].x));
         for row in sweep {
             table += &row.echo().map_or("  5110".into(), |range| format!("  {}", 1000.0 * range));
         }
         table += "\n";
     }
-    let foreign = atm_fed(["fuse", "-", "--rig", &rig], table).exits(0).echoes();
+    let log = scratch.file("mine.txt", table);
+    let foreign = atm(["fuse", &log, "--rig", &rig]).exits(0).echoes();
     let own = fuse_sample(&[]).echoes();
     assert_eq!(foreign.len(), own.len());
     for (foreign, own) in foreign.iter().zip(&own) {
@@ -220,8 +221,8 @@ fn ids_of_a_rig_of_single_sensors_are_those_of_the_log() {
     let log = "t,sensor,range,x,y,yaw\n0,front,1,0,0,0\n0,\"left, low\",2,0,0,0\n";
     let ran = atm_fed(["fuse", "-", "--rig", &rig], log).exits(0);
     let rows: Vec<&str> = ran.text().lines().skip(1).collect();
-    assert!(rows[0].starts_with("0,front,1.2,0.0,center,1.0,"), "{}", rows[0]);
-    let cells: Vec<&str> = rows[1].strip_prefix("0,\"left, low\",").expect("the id in quotes").split(',').collect();
+    assert!(rows[0].starts_with("0.0,front,1.2,0.0,center,1.0,"), "{}", rows[0]);
+    let cells: Vec<&str> = rows[1].strip_prefix("0.0,\"left, low\",").expect("the id in quotes").split(',').collect();
     assert_near(number(cells[0]), 0.1, 1e-12);
     assert_near(number(cells[1]), 2.05, 1e-12);
 }

@@ -12,7 +12,7 @@ fn fuse_bytes(bytes: &[u8], more: &[&str]) -> (Ran, Value) {
     let log = scratch.file("drive.mcap", bytes);
     let counts = scratch.name("counts.json");
     let ran = atm(["fuse", &log, "--summary", &counts].iter().chain(more));
-    let counts = if matches!(ran.status, 1 | 2) { Value::Null } else { read_json(&counts) };
+    let counts = if std::path::Path::new(&counts).exists() { read_json(&counts) } else { Value::Null };
     (ran, counts)
 }
 
@@ -84,7 +84,7 @@ fn a_stamp_of_zero_is_named_with_the_way_out() {
 fn limits_and_beams_that_are_none_are_counted() {
     let limits = |limits| move |message: &mut Message| message.data = Reading { limits, ..reading(message) }.message();
     one_is("fixed_distance", &["min_range and max_range are both 0.5"], limits([0.5, 0.5]));
-    one_is("bad_limits", &["min_range 2, max_range 1"], limits([2.0, 1.0]));
+    one_is("bad_limits", &["min_range 2 is above max_range 1", "in a rig"], limits([2.0, 1.0]));
     one_is("bad_limits", &["min_range NaN"], limits([f32::NAN, 1.0]));
     one_is("bad_limits", &["field_of_view of 15"], |message| {
         message.data = Reading { beam: 15.0, ..reading(message) }.message();
@@ -188,7 +188,7 @@ fn a_tree_in_two_pieces_is_named_with_the_missing_link() {
         message.data = transforms(&[Transform { t, parent: "odom", child: "base_footprint", at: [0.0; 3] }]);
     }
     let (ran, counts) = fuse(&recording, &[]);
-    ran.exits(3).says(&["784 no_transform", "`0` (under `base_link`)", "no transform between `odom` and `base_link`"]);
+    ran.exits(1).says(&["784 no_transform", "`0` (under `base_link`)", "no transform between `odom` and `base_link`"]);
     assert_eq!((&counts["readings"], &counts["dropped"]), (&json!(0), &json!({ "no_transform": 784 })));
 }
 
@@ -197,8 +197,13 @@ fn poses_that_are_too_far_away_in_time_are_counted() {
     let mut recording = drive();
     recording.messages.retain(|message| message.topic != "/tf" || message.log_time % 2_000_000_000 == 1);
     let (ran, counts) = fuse(&recording, &[]);
-    ran.exits(3).says(&["no_pose", "no transform of `base_link` in `odom` on both sides"]);
+    ran.exits(3).says(&["no_pose", "2.000 s apart, and the robot moved 0.25 m", "--max-gap 2s"]);
     assert_eq!(tally(&counts, "/readings") + tally(&counts, "/dropped/no_pose"), READINGS);
+    // Two poses are too few to know that they always come so seldom; what somebody names is meant.
+    assert_eq!(tally(&counts, "/readings"), READINGS - 16);
+    let (ran, counts) = fuse(&recording, &["--max-gap", "0.5s"]);
+    assert!(tally(&counts, "/dropped/no_pose") > 300);
+    ran.exits(3);
     let (_, counts) = fuse(&recording, &["--max-gap", "1s"]);
     assert_eq!(tally(&counts, "/readings"), READINGS);
 }
@@ -234,7 +239,7 @@ fn a_schema_that_names_range_and_is_none_is_refused_with_the_reason() {
         ("float32[ range\n", "is no field"),
     ] {
         let (ran, counts) = topic_of(definition);
-        ran.exits(3).says(&["784 bad_schema", "/sonar/0 at 4000", words]);
+        ran.exits(1).says(&["784 bad_schema", "/sonar/0 at 4000", words]).writes_nothing();
         assert_eq!(counts["dropped"], json!({ "bad_schema": 784 }));
     }
 }
@@ -344,7 +349,7 @@ fn what_is_longer_than_allowed_is_counted_and_what_nobody_wants_may_be_as_long_a
     let expected = fuse(&drive(), &[]).0.stdout;
     fuse(&recording, &["--max-message", "10k"]).0.exits(0).writes(&expected);
     let (ran, counts) = fuse(&recording, &["--max-message", "60"]);
-    ran.exits(3).says(&["too_long", "longer than --max-message"]);
+    ran.exits(1).says(&["too_long", "longer than --max-message"]);
     assert!(tally(&counts, "/dropped/too_long") > 700);
     for wrong in ["0", "-1", "1.5", "1T", "many"] {
         fuse(&recording, &[&format!("--max-message={wrong}")]).0.exits(2).says(&[wrong]);

@@ -188,7 +188,7 @@ fn min_step_skips_sensors_that_have_not_moved_far_enough() {
     assert_eq!((tally(&summary, "/readings"), tally(&summary, "/skipped/min_step")), (25 * 16, 24 * 16));
     let every_second: String = sample()
         .lines()
-        .filter(|line| line.split(',').next().and_then(|t| t.parse::<u32>().ok()).is_none_or(|t| t % 2 == 0))
+        .filter(|line| line.split(',').next().and_then(|t| t.parse::<f64>().ok()).is_none_or(|t| t % 2.0 == 0.0))
         .map(|line| format!("{line}\n"))
         .collect();
     ran.exits(0).writes(fuse_text(every_second, &[]).exits(0).stdout);

@@ -141,6 +141,11 @@ impl<T: Scalar> Bounds<T> {
         Self { held, ..self }
     }
 
+    /// What becomes of a reading equal to its sensor's previous one.
+    pub const fn held(&self) -> Held {
+        self.held
+    }
+
     /// The local map spans a travel, and its readings are spaced; H is the most readings of a sensor that it holds.
     pub const fn with_span(self, span: Span<T>) -> Self {
         Self { span: Some(span), ..self }

@@ -199,11 +199,11 @@ impl<W: Write> TruthWriter<W> {
     /// Writes the truth of the reading of a sensor at a time in nanoseconds.
     pub fn write(&mut self, t: i64, sensor: &str, point: &TruthPoint) -> io::Result<()> {
         self.row.clear();
-        stamp::write(t, &mut self.row);
+        stamp::write_decimal(t, &mut self.row);
         self.row.push(b',');
         self.row.extend_from_slice(&quoted(sensor));
         let TruthPoint { position, azimuth, cause } = point;
-        writeln!(self.row, ",{},{},{azimuth},{cause}", position.x, position.y)?;
+        writeln!(self.row, ",{:?},{:?},{azimuth:?},{cause}", position.x, position.y)?;
         self.out.write_all(&self.row)
     }
 

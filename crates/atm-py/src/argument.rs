@@ -87,7 +87,7 @@ pub mod named {
     }
 
     words! { emit on_none on_two name id schema estimator }
-    optional_words! { empty from_ to topic pose_topic fixed_frame clock held preset units }
+    optional_words! { empty from_ to topic pose_topic fixed_frame clock held range_unit boresight t_unit preset units }
     flags! { drop_held strict passthrough }
 
     /// Where it has to be given or has a default of its own.

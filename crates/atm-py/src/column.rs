@@ -213,8 +213,9 @@ pub fn numbers<'py>(name: &str, given: &Bound<'py, PyAny>, shape: Shape) -> PyRe
     }
 }
 
-/// Times: seconds where they are floats, nanoseconds where they are whole numbers.
-pub fn times<'py>(given: &Bound<'py, PyAny>, shape: Shape) -> PyResult<HeldTimes<'py>> {
+/// Times: seconds where they are floats, nanoseconds where they are whole numbers, and what they say themselves where they are
+/// datetime64. `unit`: of whole numbers, in nanoseconds; without one it has to make sense that they are that.
+pub fn times<'py>(given: &Bound<'py, PyAny>, shape: Shape, unit: Option<i64>) -> PyResult<HeldTimes<'py>> {
     const NAME: &str = "t";
     if let Some(value) = argument::plain_number(given).filter(|_| shape == Shape::Any) {
         if !given.is_instance_of::<PyInt>() {
@@ -223,32 +224,79 @@ pub fn times<'py>(given: &Bound<'py, PyAny>, shape: Shape) -> PyResult<HeldTimes
             return Ok(HeldTimes { clock, nanoseconds: Nanoseconds::Given(Held::Same(ns)) });
         }
         let wrong = |_| raise::value(NAME, format_args!("{} ns is no time: beyond 64 bits", argument::shown(given)));
-        return Ok(whole_times(Held::Same(given.extract().map_err(wrong)?)));
+        return whole_times(Held::Same(given.extract().map_err(wrong)?), unit);
     }
     check_mask(NAME, given)?;
     let array = array(NAME, given, shape)?;
     match array.dtype().kind() {
         b'f' => seconds(given.py(), &held(array)?),
-        b'i' => held(array).map(whole_times),
+        b'i' => whole_times(held(array)?, unit),
         b'u' => {
             let numpy = given.py().import("numpy")?;
             let beyond = numpy.call_method1("flatnonzero", (array.rich_compare(i64::MAX, CompareOp::Gt)?,))?;
             if let Some(index) = beyond.try_iter()?.next() {
                 return Err(raise::value(&format!("{NAME}[{}]", index?), "is no time: beyond 64 bits"));
             }
-            held(array).map(whole_times)
+            whole_times(held(array)?, unit)
         }
-        b'M' => Err(raise::kind(
-            NAME,
-            "expected float seconds or int nanoseconds, found datetime64; convert it with \
-             astype('datetime64[ns]').astype('int64')",
-        )),
+        b'M' => {
+            let nanoseconds = array.call_method1("astype", ("datetime64[ns]",))?;
+            let numpy = given.py().import("numpy")?;
+            let missing = numpy.call_method1("flatnonzero", (numpy.call_method1("isnat", (&nanoseconds,))?,))?;
+            if let Some(index) = missing.try_iter()?.next() {
+                return Err(raise::value(&format!("{NAME}[{}]", index?), "is no time: NaT"));
+            }
+            whole_times(held(nanoseconds.call_method1("astype", ("int64",))?.cast_into()?)?, Some(1))
+        }
         _ => Err(no_numbers(NAME, &array, "float seconds or int nanoseconds")),
     }
 }
 
-const fn whole_times(held: Held<'_, i64>) -> HeldTimes<'_> {
-    HeldTimes { clock: Clock::Nanoseconds, nanoseconds: Nanoseconds::Given(held) }
+/// Whole numbers of a unit in nanoseconds. Only nanoseconds are given back as whole numbers.
+fn whole_times(held: Held<'_, i64>, unit: Option<i64>) -> PyResult<HeldTimes<'_>> {
+    match unit {
+        None => check_pace(&held)?,
+        Some(1) => {}
+        Some(unit) => {
+            let taken = |index, t: i64| {
+                t.checked_mul(unit).ok_or_else(|| Fault {
+                    argument: "t",
+                    index,
+                    message: format!("{t} is no time: beyond 64 bits"),
+                })
+            };
+            let nanoseconds = match held.column() {
+                Column::Same(t) => Nanoseconds::Given(Held::Same(taken(None, t)?)),
+                Column::Each(view) => {
+                    let items = view.iter().enumerate().map(|(index, &t)| taken(Some(index), t));
+                    Nanoseconds::Taken(items.collect::<Result<_, Fault>>()?)
+                }
+            };
+            return Ok(HeldTimes { clock: Clock::Seconds, nanoseconds });
+        }
+    }
+    Ok(HeldTimes { clock: Clock::Nanoseconds, nanoseconds: Nanoseconds::Given(held) })
+}
+
+/// Refuses whole numbers that are no nanoseconds: more than a million instants a second are seconds, or some other unit.
+fn check_pace(held: &Held<'_, i64>) -> PyResult<()> {
+    const SHORTEST: u64 = 1_000;
+    let Column::Each(view) = held.column() else { return Ok(()) };
+    let (mut instants, mut last) = (0u64, None);
+    for &t in view {
+        instants += u64::from(last.replace(t).is_some_and(|last| last != t));
+    }
+    let (Some(&first), Some(last)) = (view.first(), last) else { return Ok(()) };
+    let span = last.abs_diff(first);
+    if instants == 0 || span / instants >= SHORTEST {
+        return Ok(());
+    }
+    let message = format!(
+        "whole numbers from {first} to {last}, which would be {span} ns for {} different times; say t_unit=\"s\", or \"ns\" if they \
+         are that, or give float seconds",
+        instants + 1
+    );
+    Err(raise::value("t", message))
 }
 
 /// Seconds as nanoseconds, with the interpreter let go.

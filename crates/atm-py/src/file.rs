@@ -2,22 +2,23 @@
 
 use atm::{
     core::{Beam, Bounds, MinAngle, RangeResolution, TransversalMedian},
-    job::{FuseJob, LogJob, MAX_GAP, McapWishes},
+    job::{FuseJob, LogJob, McapWishes},
     log::{
         Input,
         csv::EmptyCell,
         format::Format,
-        mcap::{ClockChoice, write::SchemaKind},
+        mcap::{Boresight, ClockChoice, write::SchemaKind},
     },
     pipeline::{self, Defaults, SensorModel, Settings},
     summary::{Dropped, Summary},
-    units::{self, UnitError},
+    track::MotionLimit,
+    units::{self, Scale, UnitError},
 };
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyString};
 
 use crate::{
     argument::{self, named},
-    fuse::{warn, warn_of_near},
+    fuse::{warn, warn_of},
     job,
     options::{self, Choice, LocalMap},
     raise,
@@ -48,6 +49,24 @@ fn duration(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<u64
     u64::try_from(nanoseconds).map(Some).map_err(|_| wrong())
 }
 
+/// Topics: a list of texts, or one text with commas.
+fn topics(name: &str, topics: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<String>> {
+    Ok(topics.map(|topics| argument::words(name, topics)).transpose()?.unwrap_or_default())
+}
+
+/// The fastest motion that is believed, in metres a second or as a text with its unit.
+fn speed_limit(speed: Option<&Bound<'_, PyAny>>) -> PyResult<MotionLimit> {
+    let Some(speed) = quantity("max_speed", speed, units::speed)? else { return Ok(MotionLimit::DEFAULT) };
+    MotionLimit::new(speed).ok_or_else(|| raise::value("max_speed", format_args!("{speed} is not positive")))
+}
+
+/// The step in which a log writes lengths.
+fn length_unit(text: &str) -> PyResult<Scale> {
+    let unit = Scale::length(text).map_err(|error| raise::value("range_unit", error))?;
+    let is_positive = unit.apply(1.0) > 0.0;
+    if is_positive { Ok(unit) } else { Err(raise::value("range_unit", format_args!("{text} is not positive"))) }
+}
+
 fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
     match value {
         Some(number) if !(number > 0.0 && number.is_finite()) => {
@@ -74,8 +93,11 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 ///     Write the counts as JSON, too.
 /// crossings : str or os.PathLike, optional
 ///     Also write every transversal crossing, as CSV.
-/// max_gap : float or str
-///     A reading without a pose within this time on both sides is dropped and counted.
+/// max_gap : float or str, optional
+///     A reading without a pose within this time on both sides is dropped and counted. None: 0.5 s, and more where poses come less
+///     often and the robot hardly moves in between.
+/// max_speed : float or str, optional
+///     A reading between poses that move faster is dropped and counted. None: 10 m/s.
 /// empty : {"no-echo", "skip"}, optional
 ///     What an empty range cell is. None: "no-echo" in long tables, "skip" in wide ones.
 /// improvement, at : float or str, optional
@@ -98,6 +120,14 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// pose_topic, fixed_frame : str, optional
 ///     Recordings: where the poses come from and in which frame they are. None: transforms, else odometry, else poses; the frame odom,
 ///     else the topmost.
+/// tf_topics : iterable of str or str, optional
+///     Recordings: topics of transforms, each with the static ones of its namespace. None: those of the readings' namespace.
+/// scan_topics : iterable of str or str, optional
+///     Recordings: topics of sensor_msgs/LaserScan whose beams are a sonar's cones.
+/// range_unit : str, optional
+///     Recordings: unit of ranges and limits ("cm", "mm"). None: the rig's, else metres.
+/// boresight : {"x", "y", "z", "-x", "-y", "-z"}, optional
+///     Recordings: axis of their frames along which sensors look. None: x.
 /// clock : {"header", "log", "publish"}, optional
 ///     Recordings: which time of a message counts. None: the stamp in its header.
 /// reorder : float or str, optional
@@ -127,8 +157,8 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
 /// Warns
 /// -----
 /// UserWarning
-///     Records that could not be used, each cause with its count and first place; and a guessed range resolution that makes more than
-///     20 % of the echoes near.
+///     Records that could not be used, each cause with its count and first place; and what is likely wrong with the log: the dict's
+///     `advice`.
 ///
 /// Examples
 /// --------
@@ -146,7 +176,8 @@ fn positive(name: &'static str, value: Option<f64>) -> PyResult<Option<f64>> {
                     drop_held=false, strict=false, from_=None, to=None, schema="foxglove", passthrough=false,
                     range_topics=None, pose_topic=None, fixed_frame=None,
                     clock=None, reorder=None, max_message=None, progress=None, held=None, estimator="atm", confidence=None,
-                    range_error=None, reach=None, preset=None))]
+                    range_error=None, tf_topics=None, scan_topics=None, max_speed=None, range_unit=None, boresight=None,
+                    reach=None, preset=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse_file<'py>(
     py: Python<'py>,
@@ -188,6 +219,11 @@ pub fn fuse_file<'py>(
     #[pyo3(from_py_with = named::estimator)] estimator: &str,
     #[pyo3(from_py_with = named::confidence)] confidence: Option<f64>,
     range_error: Option<&Bound<'py, PyAny>>,
+    tf_topics: Option<&Bound<'py, PyAny>>,
+    scan_topics: Option<&Bound<'py, PyAny>>,
+    max_speed: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = named::range_unit)] range_unit: Option<&str>,
+    #[pyo3(from_py_with = named::boresight)] boresight: Option<&str>,
     reach: Option<&Bound<'py, PyAny>>,
     #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -206,22 +242,31 @@ pub fn fuse_file<'py>(
     let empties = [("no-echo", EmptyCell::NoEcho), ("skip", EmptyCell::Skip)];
     let schemas = [("foxglove", SchemaKind::Foxglove), ("ros2", SchemaKind::Ros2)];
     let clocks = [("header", ClockChoice::Header), ("log", ClockChoice::Log), ("publish", ClockChoice::Publish)];
+    let axes = [
+        ("x", Boresight::X),
+        ("y", Boresight::Y),
+        ("z", Boresight::Z),
+        ("-x", Boresight::MinusX),
+        ("-y", Boresight::MinusY),
+        ("-z", Boresight::MinusZ),
+    ];
     let mut job = FuseJob {
         log: LogJob {
             input: argument::path("input", input)?,
+            parts: Vec::new(),
             opens: Input::open,
             from: from_.map(|word| argument::choice("from_", word, &formats)).transpose()?,
             rig: rig.map(rig_of).transpose()?,
             poses: path("poses", poses)?,
-            max_gap: duration("max_gap", max_gap)?.unwrap_or(MAX_GAP),
+            max_gap: duration("max_gap", max_gap)?,
+            max_speed: speed_limit(max_speed)?,
             empty: empty.map(|word| argument::choice("empty", word, &empties)).transpose()?,
             defaults,
             mcap: McapWishes {
-                range_topics: range_topics
-                    .map(|topics| argument::words("range_topics", topics))
-                    .transpose()?
-                    .unwrap_or_default(),
+                range_topics: topics("range_topics", range_topics)?,
                 pose_topic: pose_topic.map(str::to_owned),
+                tf_topics: topics("tf_topics", tf_topics)?,
+                scan_topics: topics("scan_topics", scan_topics)?,
                 fixed_frame: fixed_frame.map(str::to_owned),
                 clock: clock.map(|word| argument::choice("clock", word, &clocks)).transpose()?,
                 reorder: duration("reorder", reorder)?,
@@ -229,6 +274,8 @@ pub fn fuse_file<'py>(
                     .map(|bytes| argument::whole("max_message", bytes))
                     .transpose()?
                     .map(|bytes| bytes as u64),
+                range_unit: range_unit.map(length_unit).transpose()?,
+                boresight: boresight.map(|word| argument::choice("boresight", word, &axes)).transpose()?,
             },
         },
         rig_file: rig.and_then(|rig| argument::path("rig", rig).ok()),
@@ -271,7 +318,7 @@ pub fn fuse_file<'py>(
     job.check(&settings).map_err(|error| raise::library(&error))?;
     let progress = progress.map(|progress| progress.clone().unbind());
     let summary = job::run(py, &job, &settings, progress.as_ref())?;
-    told(py, job.log.guesses_resolution(), &summary)
+    told(py, &summary)
 }
 
 /// How the smallest crossing angle is chosen.
@@ -306,13 +353,11 @@ fn unusable(dropped: &Dropped) -> Option<String> {
 }
 
 /// The counts as a dict; what deserves a word is warned of.
-fn told<'py>(py: Python<'py>, guessed: bool, summary: &Summary) -> PyResult<Bound<'py, PyAny>> {
+fn told<'py>(py: Python<'py>, summary: &Summary) -> PyResult<Bound<'py, PyAny>> {
     if let Some(unusable) = unusable(&summary.dropped) {
         warn(py, &unusable)?;
     }
-    if guessed {
-        warn_of_near(py, summary)?;
-    }
+    warn_of(py, &summary.advice)?;
     let text = serde_json::to_string(summary).map_err(|error| PyValueError::new_err(error.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
 }

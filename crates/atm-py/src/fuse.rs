@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use atm::{
     core::Kind,
+    diagnose::{Diagnosis, guessed_resolution},
     error::{Error, Problem, Result},
     log::{Next, Row, Source},
     pipeline::{self, EchoSink, SensorModel, Settings},
@@ -24,8 +25,6 @@ use crate::{
 
 /// Readings that are handed over at once, at most.
 const MOST_IN_A_ROW: usize = 1024;
-/// Share of echoes of kind `near` above which a guessed range resolution deserves a word.
-const MANY_NEAR: f64 = 0.2;
 
 /// Readings in arrays, as a log: those of one time and pose are one record.
 pub struct ArraySource<'r, 'w> {
@@ -128,17 +127,10 @@ fn run(
     }
 }
 
-/// Says that a guessed range resolution makes many echoes near.
-pub fn warn_of_near(py: Python<'_>, summary: &Summary) -> PyResult<()> {
-    let (near, total) = (summary.echoes.get(Kind::Near.name()), summary.echoes.total());
-    if near as f64 <= MANY_NEAR * total as f64 {
-        return Ok(());
-    }
-    let message = format!(
-        "{near} of {total} echoes are near; a range resolution of 1in was assumed, say range_resolution if the ranges are \
-         finer"
-    );
-    warn(py, &message)
+/// Says what is likely wrong with the log, but for records that can't be used, which are told of with their places.
+pub fn warn_of(py: Python<'_>, advice: &[Diagnosis]) -> PyResult<()> {
+    let told = advice.iter().filter(|found| !matches!(found, Diagnosis::Unusable { .. } | Diagnosis::Recording(_)));
+    told.into_iter().try_for_each(|found| warn(py, &found.to_string()))
 }
 
 /// Says something that is no error.
@@ -152,7 +144,8 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 /// Parameters
 /// ----------
 /// t : array_like of float64 or int64, shape (n,)
-///     When each reading was taken, in order: float seconds (taken to the nearest nanosecond, half-even), or int nanoseconds.
+///     When each reading was taken, in order: float seconds (taken to the nearest nanosecond, half-even), int nanoseconds or other
+///     whole numbers with their `t_unit`, or datetime64.
 /// sensor : array_like of str or int, shape (n,)
 ///     The sensors' ids. Whole numbers only where the rig's ids are exactly "0", "1", ...; else see `sensor_index`.
 /// range_ : array_like, shape (n,)
@@ -200,12 +193,15 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 ///     None: the sensors' largest range, at most 2.54 m.
 /// preset : {"paper"}, optional
 ///     The last 10 readings of every sensor, for a robot at 5 in/s that reads once a second.
+/// t_unit : {"s", "ms", "us", "ns"}, optional
+///     The unit of whole numbers in `t`. None: ns, if that makes sense; whole numbers with less than a microsecond from one to the next
+///     are refused.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray
-///     One row an echo, in the order in which they are reported, with the fields ``t`` (the reading's own, float64 or int64
-///     as `t` was given), ``sensor``, ``x``, ``y`` (metres, the fixed frame), ``kind`` ("median", "single", "center", "near",
+///     One row an echo, in the order in which they are reported, with the fields ``t`` (the reading's own, int64 where `t`
+///     was given as nanoseconds, else float64 seconds), ``sensor``, ``x``, ``y`` (metres, the fixed frame), ``kind`` ("median", "single", "center", "near",
 ///     "pair"), ``range`` (metres), ``azimuth`` (radians from the boresight), ``crossings``, ``resolution`` (metres along the arc)
 ///     and ``significance`` (equation (1)). By the consensus the kinds are "point", "wall" and "center", `crossings` counts the
 ///     readings that agree, and there follow ``support``, ``against`` (counts), ``sigma_azimuth`` (radians), ``sigma_range`` (metres),
@@ -222,7 +218,8 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 /// Warns
 /// -----
 /// UserWarning
-///     More than 20 % of the echoes are near, and the range resolution was a guess.
+///     What is likely wrong with the readings: hardly anything is resolved, headings in degrees, millimetres taken for metres, more than
+///     20 % of the echoes near by a guessed range resolution, and the like.
 ///
 /// Notes
 /// -----
@@ -248,7 +245,7 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 #[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=None, min_angle=None, range_resolution=None,
                     field_of_view=None, emit="settled", on_none="center", on_two="drop", max_age=None, max_travel=None,
                     min_step=None, drop_held=false, keep=None, sensor_index=None, held=None, estimator="atm",
-                    confidence=None, range_error=None, reach=None, preset=None))]
+                    confidence=None, range_error=None, reach=None, preset=None, t_unit=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn fuse<'py>(
     py: Python<'py>,
@@ -278,8 +275,9 @@ pub fn fuse<'py>(
     #[pyo3(from_py_with = named::range_error)] range_error: Option<f64>,
     #[pyo3(from_py_with = named::reach)] reach: Option<f64>,
     #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
+    #[pyo3(from_py_with = named::t_unit)] t_unit: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index };
+    let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index, t_unit };
     let options = Options {
         map: LocalMap { history, reach, preset },
         min_angle,
@@ -300,8 +298,10 @@ pub fn fuse<'py>(
     let arguments = Arguments::new(&call, &rig, Shape::Array)?;
     let mut echoes = Echoes::new(&rig, arguments.clock(), &settings.estimator, keep, arguments.readings().len());
     let summary = run(py, arguments.readings(), &options::models(&rig, &defaults)?, &settings, &mut echoes)?;
+    warn_of(py, &summary.advice)?;
     if defaults.guesses_resolution(&rig) {
-        warn_of_near(py, &summary)?;
+        let (near, total) = (summary.echoes.get(Kind::Near.name()), summary.echoes.total());
+        warn_of(py, guessed_resolution(near, total).as_slice())?;
     }
     echoes.into_array(py)
 }
@@ -311,7 +311,7 @@ pub fn fuse<'py>(
 /// Parameters
 /// ----------
 /// t, sensor, range_, x, y, yaw, rig, history, min_angle, range_resolution, field_of_view, emit, on_none, on_two, max_age, \
-/// max_travel, min_step, drop_held, sensor_index
+/// max_travel, min_step, drop_held, sensor_index, t_unit
 ///     As in :func:`fuse`.
 ///
 /// Returns
@@ -331,13 +331,13 @@ pub fn fuse<'py>(
 /// >>> import atm, numpy as np
 /// >>> rig = atm.Rig.ring(count=1, radius=0.0, first_yaw=np.pi / 2, field_of_view=np.pi / 3, range_resolution=0.01)
 /// >>> x = np.array([-0.6, 0.6])
-/// >>> found = atm.crossings(np.arange(2), np.zeros(2, int), np.hypot(x, 2.0), x, x * 0, x * 0, rig=rig)
+/// >>> found = atm.crossings(np.arange(2.0), np.zeros(2, int), np.hypot(x, 2.0), x, x * 0, x * 0, rig=rig)
 /// >>> len(found), float(found["y"][0].round(6))
 /// (2, 2.0)
 #[pyfunction]
 #[pyo3(signature = (t, sensor, range_, x, y, yaw, *, rig, history=None, min_angle=None, range_resolution=None,
                     field_of_view=None, emit="settled", on_none="center", on_two="drop", max_age=None, max_travel=None,
-                    min_step=None, drop_held=false, sensor_index=None, reach=None, preset=None))]
+                    min_step=None, drop_held=false, sensor_index=None, reach=None, preset=None, t_unit=None))]
 #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
 pub fn crossings<'py>(
     py: Python<'py>,
@@ -362,8 +362,9 @@ pub fn crossings<'py>(
     sensor_index: Option<&Bound<'py, PyAny>>,
     #[pyo3(from_py_with = named::reach)] reach: Option<f64>,
     #[pyo3(from_py_with = named::preset)] preset: Option<&str>,
+    #[pyo3(from_py_with = named::t_unit)] t_unit: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index };
+    let call = Given { t, sensor, range: range_, x, y, yaw, sensor_index, t_unit };
     let options = Options {
         map: LocalMap { history, reach, preset },
         min_angle,

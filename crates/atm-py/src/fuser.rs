@@ -247,7 +247,7 @@ impl PyFuser {
     ///
     /// Parameters
     /// ----------
-    /// t, sensor, range_, x, y, yaw, sensor_index
+    /// t, sensor, range_, x, y, yaw, sensor_index, t_unit
     ///     As in :func:`fuse`; each an array of shape (n,), or a single value that holds for all n.
     ///
     /// Returns
@@ -266,7 +266,7 @@ impl PyFuser {
     /// >>> fuser = atm.Fuser("nomad200", emit="latest")
     /// >>> len(fuser.push(0.0, ["0", "4"], [1.0, 2.0], 0.0, 0.0, 0.0))
     /// 2
-    #[pyo3(signature = (t, sensor, range_, x, y, yaw, *, sensor_index=None))]
+    #[pyo3(signature = (t, sensor, range_, x, y, yaw, *, sensor_index=None, t_unit=None))]
     #[expect(clippy::too_many_arguments, reason = "the signature is Python's")]
     fn push<'py>(
         &self,
@@ -278,8 +278,9 @@ impl PyFuser {
         y: &Bound<'py, PyAny>,
         yaw: &Bound<'py, PyAny>,
         sensor_index: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = named::t_unit)] t_unit: Option<&str>,
     ) -> PyResult<Bound<'py, PyList>> {
-        let given = Given { t, sensor, range: range_, x, y, yaw, sensor_index };
+        let given = Given { t, sensor, range: range_, x, y, yaw, sensor_index, t_unit };
         let arguments = Arguments::new(&given, &self.rig, Shape::Any)?;
         let (readings, clock) = (arguments.readings(), arguments.clock());
         let echoes = py.detach(|| self.take(&readings, clock))?;

@@ -52,7 +52,7 @@ impl<'py> Fields<'_, 'py> {
     }
 
     fn times(&self) -> PyResult<HeldTimes<'py>> {
-        times(&self.get("t")?, Shape::Array)
+        times(&self.get("t")?, Shape::Array, Some(1))
     }
 
     fn words(&self, field: &str) -> PyResult<Vec<Arc<str>>> {
@@ -288,7 +288,8 @@ pub fn compare<'py>(
         range_error: positive("range_error", range_error, 0.0)?.unwrap_or(0.0),
         cell: positive("cell", cell, f64::MIN_POSITIVE)?,
     };
-    let arguments = Arguments::new(&Given { t, sensor, range: range_, x, y, yaw, sensor_index }, &rig, Shape::Array)?;
+    let arguments =
+        Arguments::new(&Given { t, sensor, range: range_, x, y, yaw, sensor_index, t_unit: None }, &rig, Shape::Array)?;
     let readings = arguments.readings();
     let mut watch = Watch::new();
     let text = py.detach(|| {

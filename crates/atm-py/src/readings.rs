@@ -8,7 +8,7 @@ use crate::{
     column::{Column, Held, HeldTimes, Shape, numbers, times},
     raise::{self, Fault},
     sensors::{ids, indices},
-    time::Clock,
+    time::{Clock, time_unit},
 };
 
 /// The arguments of a call, held for its time.
@@ -33,12 +33,13 @@ pub struct Given<'a, 'py> {
     pub y: &'a Bound<'py, PyAny>,
     pub yaw: &'a Bound<'py, PyAny>,
     pub sensor_index: Option<&'a Bound<'py, PyAny>>,
+    pub t_unit: Option<&'a str>,
 }
 
 impl<'py> Arguments<'py> {
     /// Takes the arguments in; no copy of what is `float64` already.
     pub fn new(given: &Given<'_, 'py>, rig: &Rig, shape: Shape) -> PyResult<Self> {
-        let times = times(given.t, shape)?;
+        let times = times(given.t, shape, time_unit(given.t_unit)?)?;
         let sensors = match (given.sensor_index, given.sensor.is_none()) {
             (Some(index), true) => indices("sensor_index", index, rig, shape)?,
             (None, false) => ids(given.sensor, rig, shape)?,

@@ -140,15 +140,16 @@ impl PySensor {
     }
 }
 
-/// All of a sensor, for pickling: id, mount (x, y, cos, sin), field of view, limits, range resolution, topic.
+/// All of a sensor, for pickling: id, mount (x, y, cos, sin; without a direction where it is open), field of view, limits, range resolution, topic.
 type Parts = (String, [f64; 4], Option<f64>, f64, f64, Option<f64>, Option<String>);
 
 fn parts(sensor: &Sensor) -> Parts {
     let (mount, ranging) = (sensor.mount(), sensor.ranging());
     let (position, boresight) = (mount.translation.vector, mount.rotation);
+    let [re, im] = if sensor.has_mount() { [boresight.re, boresight.im] } else { [0.0, 0.0] };
     (
         sensor.id().to_owned(),
-        [position.x, position.y, boresight.re, boresight.im],
+        [position.x, position.y, re, im],
         ranging.field_of_view,
         ranging.min_range,
         ranging.max_range,
@@ -158,9 +159,11 @@ fn parts(sensor: &Sensor) -> Parts {
 }
 
 fn restored(id: String, mount: [f64; 4], ranging: Ranging, topic: Option<String>) -> PyResult<Sensor> {
-    let [x, y, cos, sin] = mount;
+    let is_open = matches!(mount, [.., 0.0, 0.0]);
+    let [x, y, cos, sin] = if is_open { [0.0, 0.0, 1.0, 0.0] } else { mount };
     let mount = Isometry2::from_parts(Vector2::new(x, y).into(), UnitComplex::from_cos_sin_unchecked(cos, sin));
     let sensor = Sensor::new(id, mount, ranging).map_err(|error| raise::library(&error))?;
+    let sensor = if is_open { sensor.with_open_mount() } else { sensor };
     Ok(match topic {
         Some(topic) => sensor.with_topic(topic),
         None => sensor,

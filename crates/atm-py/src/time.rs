@@ -1,6 +1,9 @@
 //! Seconds as Python has them, and whole nanoseconds as the library has them.
 
 use atm::stamp;
+use pyo3::PyResult;
+
+use crate::argument::choice;
 
 /// Decimal shift from seconds to nanoseconds.
 const DECIMAL_SHIFT: i32 = 9;
@@ -37,6 +40,12 @@ impl Clock {
             Self::Nanoseconds => ns.to_ne_bytes(),
         }
     }
+}
+
+/// The unit of whole numbers in nanoseconds, by its name.
+pub fn time_unit(name: Option<&str>) -> PyResult<Option<i64>> {
+    let units = [("s", SECOND), ("ms", 1_000_000), ("us", 1_000), ("ns", 1)];
+    name.map(|name| choice("t_unit", name, &units)).transpose()
 }
 
 /// Seconds as whole nanoseconds, rounded half-even; `None` for NaN and beyond an `i64`.

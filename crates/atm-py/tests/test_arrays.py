@@ -92,9 +92,9 @@ def test_ids_with_letters_of_every_script() -> None:
     ids = ["links", "größer", "前", "🦇", "a" * 70]
     rig = atm.Rig.from_sensors([atm.Sensor(name, yaw=number) for number, name in enumerate(ids)])
     n = len(ids)
-    found = atm.fuse(np.arange(n), np.array(ids), np.ones(n), np.zeros(n), np.zeros(n), np.zeros(n), rig=rig)
+    found = atm.fuse(np.arange(n) / 10, np.array(ids), np.ones(n), np.zeros(n), np.zeros(n), np.zeros(n), rig=rig)
     assert sorted(found["sensor"].tolist()) == sorted(ids)
-    table = atm.fuse(np.arange(n), ids, np.ones(n), np.zeros(n), np.zeros(n), np.zeros(n), rig=rig)
+    table = atm.fuse(np.arange(n) / 10, ids, np.ones(n), np.zeros(n), np.zeros(n), np.zeros(n), rig=rig)
     np.testing.assert_array_equal(found, table)
 
 
@@ -107,31 +107,31 @@ def test_ids_from_1_refuse_integers() -> None:
     rows = np.arange(1, 9)
     rest = (np.ones(8), np.zeros(8), np.zeros(8), np.zeros(8))
     with pytest.raises((ValueError, TypeError), match="sensor"):
-        atm.fuse(rows, rows, *rest, rig=one_to_eight())
+        atm.fuse(rows / 10, rows, *rest, rig=one_to_eight())
     with pytest.raises((ValueError, TypeError), match="sensor"):
-        atm.fuse(rows, rows - 1, *rest, rig=one_to_eight())
-    found = atm.fuse(rows, rows.astype(str), *rest, rig=one_to_eight())
+        atm.fuse(rows / 10, rows - 1, *rest, rig=one_to_eight())
+    found = atm.fuse(rows / 10, rows.astype(str), *rest, rig=one_to_eight())
     assert sorted(found["sensor"].tolist()) == [str(number) for number in range(1, 9)]
 
 
 def test_places_in_the_rig_instead_of_ids() -> None:
     rows = np.arange(8)
     rest = (np.ones(8), np.zeros(8), np.zeros(8), np.zeros(8))
-    by_place = atm.fuse(rows, None, *rest, rig=one_to_eight(), sensor_index=rows)
-    by_name = atm.fuse(rows, (rows + 1).astype(str), *rest, rig=one_to_eight())
+    by_place = atm.fuse(rows / 10, None, *rest, rig=one_to_eight(), sensor_index=rows)
+    by_name = atm.fuse(rows / 10, (rows + 1).astype(str), *rest, rig=one_to_eight())
     np.testing.assert_array_equal(by_place, by_name)
     with pytest.raises(ValueError, match=r"sensor_index\[7\]"):
-        atm.fuse(rows, None, *rest, rig=one_to_eight(), sensor_index=rows + 1)
+        atm.fuse(rows / 10, None, *rest, rig=one_to_eight(), sensor_index=rows + 1)
     with pytest.raises((ValueError, TypeError), match="sensor"):
-        atm.fuse(rows, rows.astype(str), *rest, rig=one_to_eight(), sensor_index=rows)
+        atm.fuse(rows / 10, rows.astype(str), *rest, rig=one_to_eight(), sensor_index=rows)
     with pytest.raises((ValueError, TypeError), match="sensor"):
-        atm.fuse(rows, None, *rest, rig=one_to_eight())
+        atm.fuse(rows / 10, None, *rest, rig=one_to_eight())
 
 
 def test_floats_are_no_sensors() -> None:
     rows = np.arange(4)
     with pytest.raises((ValueError, TypeError), match="sensor"):
-        atm.fuse(rows, rows.astype(float), np.ones(4), rows, rows, rows, rig="nomad200")
+        atm.fuse(rows / 10, rows.astype(float), np.ones(4), rows, rows, rows, rig="nomad200")
 
 
 def test_nothing_in_nothing_out(echoes: np.ndarray) -> None:
@@ -243,3 +243,39 @@ def test_crossings_lie_on_the_arcs_of_the_echoes(doorway: Readings, echoes: np.n
         mine = found[(found["t"] == echo["t"]) & (found["sensor"] == echo["sensor"])]
         assert len(mine) == 1
         assert (mine["x"][0], mine["y"][0]) == pytest.approx((echo["x"], echo["y"]), abs=1e-9)
+
+
+def test_whole_numbers_need_their_unit_where_they_are_no_nanoseconds(doorway: Readings, echoes: np.ndarray) -> None:
+    t, *rest = doorway
+    whole = t // 10**9
+    assert len(np.unique(whole)) == 49
+    with pytest.raises(ValueError, match=r"t: whole numbers from 0 to 48.*48 ns for 49 different times.*t_unit"):
+        atm.fuse(whole, *rest, rig="nomad200", max_age=5.0)
+    with pytest.raises(ValueError, match="t_unit"):
+        atm.Fuser("nomad200").push(whole, *rest)
+    with pytest.raises(ValueError, match="t_unit"):
+        atm.crossings(whole, *rest, rig="nomad200")
+    seconds = atm.fuse(whole.astype(float), *rest, rig="nomad200", max_age=5.0)
+    np.testing.assert_array_equal(atm.fuse(whole, *rest, rig="nomad200", max_age=5.0, t_unit="s"), seconds)
+    np.testing.assert_array_equal(atm.fuse(whole * 1000, *rest, rig="nomad200", max_age=5.0, t_unit="ms"), seconds)
+    assert len(seconds) != len(echoes) or not np.array_equal(seconds["kind"], echoes["kind"])
+    # Who says that they are nanoseconds is believed.
+    as_they_are = atm.fuse(whole, *rest, rig="nomad200", t_unit="ns")
+    np.testing.assert_array_equal(as_they_are["kind"], echoes["kind"])
+    with pytest.raises(ValueError, match="t_unit"):
+        atm.fuse(whole, *rest, rig="nomad200", t_unit="min")
+
+
+def test_one_time_alone_is_no_pace() -> None:
+    fuser = atm.Fuser("nomad200", emit="latest")
+    assert len(fuser.push([1, 1], ["0", "4"], [1.0, 2.0], 0.0, 0.0, 0.0)) == 2
+    assert len(fuser.push(2, "0", 1.0, 0.0, 0.0, 0.0)) == 1
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
+def test_timestamps_say_their_unit(doorway: Readings, echoes: np.ndarray, unit: str) -> None:
+    t, *rest = doorway
+    found = atm.fuse(t.astype("datetime64[ns]").astype(f"datetime64[{unit}]"), *rest, rig="nomad200")
+    np.testing.assert_array_equal(found, echoes)
+    with pytest.raises(ValueError, match=r"t\[1\]: is no time: NaT"):
+        atm.fuse(np.array([0, "NaT"], dtype="datetime64[ns]"), *(column[:2] for column in rest), rig="nomad200")

@@ -111,13 +111,13 @@ def test_shapes_that_are_no_columns(name: str, shape: tuple[int, ...]) -> None:
         [None] * 20,
         [{}] * 20,
         np.zeros(20, dtype=complex),
-        np.zeros(20, dtype="M8[ns]"),
+        np.zeros(20, dtype="m8[ns]"),
         np.zeros(20, dtype=[("a", "f8")]),
         np.array([b"\xff"] * 20),
         object(),
         None,
     ],
-    ids=["objects", "None", "dicts", "complex", "datetime64", "records", "bytes", "an object", "nothing"],
+    ids=["objects", "None", "dicts", "complex", "timedelta64", "records", "bytes", "an object", "nothing"],
 )
 def test_objects_instead_of_numbers(name: str, value: Any) -> None:
     assert_names(refusal(REFUSED, lambda: atm.fuse(**with_(**{name: value}), rig="nomad200")), name)

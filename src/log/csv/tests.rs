@@ -233,6 +233,7 @@ fn a_foreign_table_is_read_by_its_format() {
         pose: Scale::length("cm").unwrap(),
         yaw: Scale::angle("0.1deg").unwrap(),
         no_echo: vec![5110.0],
+        ..TableFormat::default()
     };
     let text = "1686487\t5110   2320 5110.0 -inf  100 -250 1800\n";
     let (rows, problems) = read_all(&mut open(text, &format).unwrap());

@@ -24,6 +24,8 @@ pub(super) enum Item<'a> {
     Message(&'a Arc<Channel>, Message<'a>),
     Metadata(Metadata),
     Attachment(Attachment<'a>),
+    /// Another recording begins, in the file of this name: numbers of channels mean others from here on.
+    Restart(Arc<str>),
     /// A record that nobody wants.
     Nothing,
     /// Something that can't be used.
@@ -35,6 +37,8 @@ pub(super) enum Kept {
     Record(u8),
     Channel(u16),
     Problem(Reason, String),
+    /// Another recording begins.
+    Restart,
 }
 
 pub(super) struct Entry {

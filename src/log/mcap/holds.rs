@@ -53,7 +53,7 @@ fn of<'a>(channels: impl Iterator<Item = &'a Channel>, readings: bool) -> Conten
     for channel in channels {
         echoes |= channel.topic == ECHOES;
         crossings |= channel.topic == CROSSING_POINTS;
-        ranges |= Kind::of(channel) == Some(Kind::Range);
+        ranges |= Kind::of(channel).is_some_and(|kind| matches!(kind, Kind::Range | Kind::Ranges));
     }
     match (echoes, crossings) {
         _ if readings && ranges => Content::Readings,

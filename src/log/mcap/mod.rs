@@ -15,8 +15,11 @@ mod crossings;
 mod decode;
 mod echoes;
 mod fields;
+mod finding;
 mod history;
 mod holds;
+mod home;
+mod namespace;
 mod op;
 mod options;
 mod order;
@@ -31,6 +34,7 @@ mod sensor_ids;
 mod sensors;
 mod source;
 mod summary;
+mod tally;
 mod topics;
 mod tree;
 mod unpacker;
@@ -43,7 +47,8 @@ pub use self::{
     clocks::ClockChoice,
     crossings::McapCrossings,
     echoes::McapEchoes,
-    options::Options,
+    finding::Finding,
+    options::{Boresight, Options},
     raw::{Attachment, Channel, Message, Metadata, Schema, Tap},
     source::McapReadings,
 };

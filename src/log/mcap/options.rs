@@ -1,13 +1,49 @@
 //! How a recording is read.
 
-use super::clocks::ClockChoice;
-use crate::{log::csv::PoseUse, pipeline::Defaults};
+use super::{clocks::ClockChoice, rigid::Rigid};
+use crate::{log::csv::PoseUse, pipeline::Defaults, track::PoseLimits, units::Scale};
+
+/// The axis of a sensor's frame along which it looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Boresight {
+    /// Forward, as `sensor_msgs/Range` has it.
+    #[default]
+    X,
+    /// To the left.
+    Y,
+    /// Upward; forward in frames of cameras (REP 103).
+    Z,
+    /// Backward.
+    MinusX,
+    /// To the right.
+    MinusY,
+    /// Downward.
+    MinusZ,
+}
+
+impl Boresight {
+    /// From the frame to one that looks along its x axis; `None` where it does.
+    pub(super) fn rotation(self) -> Option<Rigid> {
+        let (half, whole) = (std::f64::consts::FRAC_1_SQRT_2, 1.0);
+        let quaternion = match self {
+            Self::X => return None,
+            Self::Y => [0.0, 0.0, half, half],
+            Self::Z => [0.0, -half, 0.0, half],
+            Self::MinusX => [0.0, 0.0, whole, 0.0],
+            Self::MinusY => [0.0, 0.0, -half, half],
+            Self::MinusZ => [0.0, half, 0.0, half],
+        };
+        Rigid::new([0.0; 3], quaternion).ok()
+    }
+}
 
 /// How a recording is read.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Topics of readings; all there are where it is empty.
     pub range_topics: Vec<String>,
+    /// Topics of `sensor_msgs/LaserScan` whose beams are cones.
+    pub scan_topics: Vec<String>,
     /// The topic of the poses, instead of a choice.
     pub pose_topic: Option<String>,
     /// The frame of the poses, instead of a choice.
@@ -18,8 +54,14 @@ pub struct Options {
     pub reorder: u64,
     /// Longest message that is read, in bytes.
     pub max_message: u64,
-    /// A reading without a pose within this on both sides, in nanoseconds, has none.
-    pub max_gap: u64,
+    /// The topics of transforms, with those of static ones around them; all there are where it is empty.
+    pub tf_topics: Vec<String>,
+    /// How near poses have to be, and how fast they may move.
+    pub limits: PoseLimits,
+    /// Along which axis of their frames sensors look whose mounts come from the recording.
+    pub boresight: Boresight,
+    /// From raw ranges and limits to metres, instead of what the rig says.
+    pub range_unit: Option<Scale>,
     /// What is made of the recording's own poses.
     pub poses: PoseUse,
     /// Whether a [`super::Tap`] is to be told all that the recording holds.
@@ -39,12 +81,16 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             range_topics: Vec::new(),
+            scan_topics: Vec::new(),
             pose_topic: None,
             fixed_frame: None,
             clock: ClockChoice::Header,
             reorder: Self::REORDER,
             max_message: Self::MAX_MESSAGE,
-            max_gap: 500_000_000,
+            tf_topics: Vec::new(),
+            limits: PoseLimits::default(),
+            boresight: Boresight::X,
+            range_unit: None,
             poses: PoseUse::Needed,
             everything: false,
             defaults: Defaults::default(),

@@ -14,8 +14,11 @@ pub(super) fn on_plane(reading: &Reading, sensor: &Rigid) -> Result<(f64, View),
     // NaN is out of the plane, too.
     if up.is_nan() || up.abs() > STEEPEST {
         let degrees = libm::asin(up.clamp(-1.0, 1.0)).to_degrees();
-        let words = format!("its boresight points {degrees:.1}deg out of the plane, and may 10deg");
-        return Err(Lost { reason: Reason::Tilted, words });
+        let words = format!(
+            "its boresight, the x axis of its frame, points {degrees:.1}deg out of the plane, and may 10deg; if it looks along another \
+             axis, --boresight z or -z; else its mount in a rig cures it (--rig)"
+        );
+        return Err(Lost::new(Reason::Tilted, words));
     }
     let cosine = (forward * forward + left * left).sqrt();
     let (x, y) = sensor.position();
@@ -27,7 +30,7 @@ pub(super) fn on_plane(reading: &Reading, sensor: &Rigid) -> Result<(f64, View),
     }
     let (min, max) = (reading.sight.limits.min() * cosine, reading.sight.limits.max() * cosine);
     let limits = Limits::new(min, max);
-    view.limits = limits.map_err(|error| Lost { reason: Reason::BadLimits, words: error.to_string() })?;
+    view.limits = limits.map_err(|error| Lost::new(Reason::BadLimits, error.to_string()))?;
     Ok((reading.range * cosine, view))
 }
 

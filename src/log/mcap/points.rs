@@ -110,7 +110,7 @@ impl<const N: usize> Points<N> {
                     Err(Refused::Topic(words)) => return Err(format_error(&self.name, byte, words)),
                 }
             }
-            Item::Header(..) | Item::Attachment(_) | Item::Nothing => {}
+            Item::Header(..) | Item::Attachment(_) | Item::Restart(_) | Item::Nothing => {}
         }
         Ok(true)
     }

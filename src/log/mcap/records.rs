@@ -3,7 +3,7 @@
 //! Of a chunk only what is wanted is kept while it is unpacked, and handed on when its checksum is right. Where more than
 //! [`super::arena::ARENA`] bytes of it are wanted, they are handed on before.
 
-use std::{io, sync::Arc};
+use std::{collections::VecDeque, io, sync::Arc};
 
 use super::{
     arena::{Arena, Item, Kept, parsed},
@@ -31,6 +31,8 @@ pub(super) enum Stage {
     Chunk(Box<Chunk>),
     /// A record behind the end of the data.
     Summary(Window<Recording>),
+    /// What is behind the end of the recording.
+    Behind(Window<Recording>),
     Ended,
 }
 
@@ -80,6 +82,17 @@ pub(super) struct Records {
     /// Channels that were handed on.
     told: Vec<u64>,
     damaged: bool,
+    /// Recordings that go on where this one ends.
+    parts: VecDeque<Part>,
+    /// Bytes of the parts before this one.
+    before: u64,
+}
+
+/// One of several recordings that are read as one.
+pub(super) struct Part {
+    pub(super) name: Arc<str>,
+    pub(super) recording: Recording,
+    pub(super) ahead: Ahead,
 }
 
 impl Records {
@@ -112,8 +125,55 @@ impl Records {
             let place = Place { file: name, line: 0, byte: 0 };
             return Err(Error::Format { place, message: "no MCAP recording: it does not begin as one".into() });
         };
-        let (told, damaged) = (vec![0; 1 << 10], false);
-        Ok(Self { name, stage, position: 0, registry, complete, limits, ahead, arena, told, damaged })
+        Ok(Self {
+            name,
+            stage,
+            position: 0,
+            registry,
+            complete,
+            limits,
+            ahead,
+            arena,
+            told: vec![0; 1 << 10],
+            damaged: false,
+            parts: VecDeque::new(),
+            before: 0,
+        })
+    }
+
+    /// From where this recording ends on, `part` is read: the next one of several that are one.
+    pub(super) fn then(&mut self, part: Part) {
+        self.parts.push_back(part);
+        // Another part may have other channels.
+        self.complete = false;
+    }
+
+    /// Begins with the next part, where there is one.
+    fn next_part(&mut self) -> Result<bool> {
+        let Some(Part { name, recording, ahead }) = self.parts.pop_front() else { return Ok(false) };
+        self.before += self.position;
+        self.position = 0;
+        self.name = name;
+        self.ahead = ahead;
+        self.forget_channels();
+        let failed = |source| Error::Io { file: self.name.clone(), source };
+        let mut window = Window::new(recording, true);
+        let start = window.need(MAGIC.len()).map_err(failed)?;
+        if start != MAGIC {
+            let place = Place { file: self.name.clone(), line: 0, byte: 0 };
+            return Err(Error::Format { place, message: "no MCAP recording: it does not begin as one".into() });
+        }
+        window.use_up(MAGIC.len());
+        self.stage = Stage::File(window);
+        Ok(true)
+    }
+
+    /// What comes is another recording, with channels of its own.
+    fn forget_channels(&mut self) {
+        self.registry.clear();
+        self.complete = false;
+        self.told.fill(0);
+        self.arena.push(Kept::Restart, self.arena.bytes.len(), 0);
     }
 
     /// The channels known so far.
@@ -131,12 +191,13 @@ impl Records {
         self.damaged
     }
 
-    /// Bytes of the file used so far.
+    /// Bytes used so far, those of all parts.
     pub(super) fn position(&self) -> u64 {
-        match &self.stage {
-            Stage::File(window) | Stage::Summary(window) => window.position(),
+        let here = match &self.stage {
+            Stage::File(window) | Stage::Summary(window) | Stage::Behind(window) => window.position(),
             _ => self.position,
-        }
+        };
+        self.before + here
     }
 
     /// Whether the next record has to be waited for.
@@ -148,7 +209,7 @@ impl Records {
         };
         match &self.stage {
             _ if !self.arena.entries.is_empty() => false,
-            Stage::File(window) | Stage::Summary(window) => waits(window),
+            Stage::File(window) | Stage::Summary(window) | Stage::Behind(window) => waits(window),
             Stage::Chunk(_) | Stage::Ended => false,
         }
     }
@@ -166,6 +227,8 @@ impl Records {
                 Stage::File(window) => self.file_record(window),
                 Stage::Chunk(chunk) => self.chunk_records(chunk),
                 Stage::Summary(window) => self.summary_record(window),
+                Stage::Behind(window) => self.behind(window),
+                Stage::Ended if self.next_part()? => return Ok(Some((Item::Nothing, 0))),
                 Stage::Ended => return Ok(None),
             };
             self.stage = next.map_err(|source| Error::Io { file: self.name.clone(), source })?;
@@ -177,6 +240,7 @@ impl Records {
             |reason, value| Item::Problem(Problem { reason, place: Place { file: name, line: 0, byte }, value });
         let bytes = self.arena.bytes.get(entry.range).unwrap_or_default();
         let item = match entry.what {
+            Kept::Restart => Item::Restart(self.name.clone()),
             Kept::Problem(reason, words) => problem(reason, words),
             Kept::Channel(id) => match self.registry.channel(id) {
                 Some(channel) => Item::Channel(channel),
@@ -378,6 +442,25 @@ impl Records {
         }
         window.use_up(MAGIC.len());
         self.position = window.position();
+        Ok(Stage::Behind(window))
+    }
+
+    /// What is behind the end of a recording: nothing, another recording, or what nobody can read.
+    fn behind(&mut self, mut window: Window<Recording>) -> io::Result<Stage> {
+        let byte = window.position();
+        if window.peek()? == Some(MAGIC) {
+            window.begin_checksum();
+            window.use_up(MAGIC.len());
+            self.ahead = Ahead::Never;
+            self.forget_channels();
+            return Ok(Stage::File(window));
+        }
+        if window.need(1)?.is_empty() {
+            return Ok(Stage::Ended);
+        }
+        let more = self.lost_from(&mut window, byte);
+        let words = format!("{more} bytes behind the end of the recording begin as none, and are not read");
+        self.arena.problem(Reason::TrailingData, byte, words);
         Ok(Stage::Ended)
     }
 }

@@ -1,6 +1,6 @@
 //! Poses in space: where a frame is in another.
 
-use crate::track::Pose;
+use crate::track::{Pose, Step};
 
 /// A rotation, then a translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +92,21 @@ impl Rigid {
             *part = from * *part + to * end;
         }
         Self { translation, rotation }
+    }
+
+    /// The way to another, turning the shorter way.
+    pub(super) fn step_to(&self, other: &Self) -> Step {
+        let distance =
+            self.translation.iter().zip(other.translation).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+        let [mut apart, mut across] = [0.0, 0.0];
+        let dot: f64 = self.rotation.iter().zip(other.rotation).map(|(a, b)| a * b).sum();
+        let sign = if dot < 0.0 { -1.0 } else { 1.0 };
+        for (from, to) in self.rotation.iter().zip(other.rotation) {
+            apart += (sign * to - from) * (sign * to - from);
+            across += (sign * to + from) * (sign * to + from);
+        }
+        // Twice the angle between the quaternions, which is twice that from the sides of a rhombus.
+        Step { distance, turn: 4.0 * libm::atan2(apart.sqrt(), across.sqrt()) }
     }
 
     /// Position seen from above, in metres.

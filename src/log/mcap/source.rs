@@ -4,16 +4,18 @@ use std::sync::Arc;
 
 use super::{
     arena::Item,
+    finding::Finding,
     options::Options,
-    raw::Tap,
+    raw::{Channel, Tap},
     reader::Reader,
-    records::{Limits, Records},
+    records::{Limits, Part, Records},
     registry::Registry,
-    topics::{self, is_clock, kind_of},
+    topics::{self, kind_of},
     unpacking::Ahead,
     window::Recording,
 };
 use crate::{
+    diagnose::Diagnosis,
     error::{Error, Place, Problem, Result},
     log::{Input, Next, Row, Source},
     pipeline::AnyTrack,
@@ -49,16 +51,31 @@ impl McapReadings {
         let name = input.name.clone();
         let recording = Recording::open(path, input)?;
         let everything = options.everything;
-        let topics = options.range_topics.clone();
-        let registry = Registry::new(Box::new(move |channel| everything || kind_of(channel, &topics).is_some()));
+        let (topics, scans) = (options.range_topics.clone(), options.scan_topics.clone());
+        let wanted = move |channel: &Channel| everything || kind_of(channel, &topics, &scans).is_some();
+        let registry = Registry::new(Box::new(wanted));
         let limits = Limits { max_message: options.max_message, everything, metadata: false };
         let records = Records::open(recording, name.clone(), registry, limits, Ahead::of(path))?;
-        let reader = Reader::new(name, rig, track, options);
+        let mut reader = Reader::new(name, rig, track, options);
+        records.registry().channels().for_each(|channel| reader.expect(channel));
         let readings = Self { records, reader, tap: None, ended: false };
         if readings.records.is_complete() {
             readings.check_topics()?;
         }
         Ok(readings)
+    }
+
+    /// The same recording, which goes on in others: the parts in which a recorder has split it, in their order.
+    ///
+    /// # Errors
+    /// One of them can't be read.
+    pub fn followed_by(mut self, parts: Vec<(String, Input)>) -> Result<Self> {
+        for (path, input) in parts {
+            let name = input.name.clone();
+            let recording = Recording::open(&path, input)?;
+            self.records.then(Part { name, recording, ahead: Ahead::Never });
+        }
+        Ok(self)
     }
 
     /// How much later than others a message may be recorded and still be put in order, in nanoseconds.
@@ -95,9 +112,30 @@ impl McapReadings {
         self.reader.whereabouts().unused()
     }
 
+    /// Ids of the rig's sensors that have had no reading, and how many sensors the rig has.
+    pub fn unmatched(&self) -> (Vec<&str>, usize) {
+        self.reader.sensors().unmatched()
+    }
+
+    /// The topic and the frame of each sensor that has had a reading, in words.
+    pub fn readings_of(&self) -> Vec<String> {
+        let ids = (0..=u16::MAX).zip(self.reader.ids());
+        ids.filter_map(|(sensor, id)| Some(format!("{} (frame {id})", self.reader.topic(sensor)?))).collect()
+    }
+
     /// What a person should know of how the recording was read: which clocks it has, what was assumed.
+    pub fn findings(&self) -> Vec<Finding> {
+        self.reader.findings()
+    }
+
+    /// The same in words, one line each.
     pub fn notes(&self) -> Vec<String> {
-        self.reader.notes()
+        self.findings().iter().map(ToString::to_string).collect()
+    }
+
+    /// By how much stamps are later than the times of recording, in words; `None` where there are none.
+    pub fn clock_words(&self) -> Option<String> {
+        self.reader.clock_words()
     }
 
     /// The recording has ended.
@@ -121,12 +159,16 @@ impl McapReadings {
                 self.reader.message(channel, message, byte, problems);
             }
             (Item::Channel(channel), tap) => {
-                if is_clock(channel) {
-                    self.reader.has_clock();
-                }
+                self.reader.expect(channel);
                 if let Some(tap) = tap {
                     tap.channel(channel)?;
                 }
+            }
+            (Item::Restart(file), None) => self.reader.restart(file),
+            (Item::Restart(file), Some(_)) => {
+                let message =
+                    "--passthrough: there is a second recording in it, and what is copied has to be one".to_owned();
+                return Err(Error::Format { place: Place { file, line: 0, byte }, message });
             }
             (Item::Header(profile, library), Some(tap)) => tap.header(profile, library)?,
             (Item::Metadata(metadata), Some(tap)) => tap.metadata(&metadata)?,
@@ -172,5 +214,9 @@ impl Source for McapReadings {
 
     fn ids(&self) -> &[Arc<str>] {
         self.reader.ids()
+    }
+
+    fn diagnoses(&self) -> Vec<Diagnosis> {
+        self.findings().into_iter().filter(Finding::is_warning).map(Diagnosis::Recording).collect()
     }
 }

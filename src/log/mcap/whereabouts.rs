@@ -2,7 +2,9 @@
 
 use super::{
     decode::{Kind, Said},
-    history::{History, Keep},
+    history::{Doubts, History, Keep},
+    home::Home,
+    namespace,
     rigid::Rigid,
     tree::{Frame, Hold, Miss, Tree},
 };
@@ -10,7 +12,7 @@ use crate::{
     error::{Problem, Reason, Result},
     log::Frames,
     pipeline::AnyTrack,
-    track::Pose,
+    track::{Pose, PoseLimits, PoseMiss, Step},
 };
 
 /// Frames that are the robot by convention (REP 105), the more usual one first.
@@ -45,9 +47,16 @@ enum Chosen {
 pub(super) struct Wish {
     /// The topic of the poses.
     pub(super) topic: Option<String>,
+    /// The topics of the transforms.
+    pub(super) transforms: Vec<String>,
+    /// Topics of readings.
+    pub(super) ranges: Vec<String>,
     /// The frame in which they are.
     pub(super) fixed: Option<String>,
 }
+
+/// How far apart the poses were that a reading lies between, and how far the robot moved, where that is more than usual.
+type Wide = Option<(u64, Step)>;
 
 /// One sensor at one time.
 #[derive(Debug, Clone, Copy)]
@@ -71,21 +80,34 @@ pub(super) struct Placed {
 pub(super) struct Lost {
     pub(super) reason: Reason,
     pub(super) words: String,
+    /// Nothing that is read later can change that, and what would come of it could be wrong.
+    pub(super) is_final: bool,
 }
 
 impl Lost {
-    fn apart(words: impl Into<String>) -> Self {
-        Self { reason: Reason::NoTransform, words: words.into() }
+    pub(super) fn new(reason: Reason, words: impl Into<String>) -> Self {
+        Self { reason, words: words.into(), is_final: false }
     }
 
-    fn gap(words: impl Into<String>) -> Self {
-        Self { reason: Reason::NoPose, words: words.into() }
+    fn apart(words: impl Into<String>) -> Self {
+        Self::new(Reason::NoTransform, words)
+    }
+
+    fn refused(words: impl Into<String>) -> Self {
+        Self { is_final: true, ..Self::apart(words) }
+    }
+
+    /// There is no pose of `what`.
+    fn missing(what: &str, miss: PoseMiss) -> Self {
+        let reason = if miss.is_impossible() { Reason::ImpossibleMotion } else { Reason::NoPose };
+        Self::new(reason, format!("no {what}: {miss}"))
     }
 
     fn missed(miss: Miss) -> Self {
         match miss {
-            Miss::Gap(frames) => Self::gap(format!("no transform of {frames} on both sides")),
+            Miss::Gap(frames, miss) => Self::missing(&format!("transform of {frames} at that time"), miss),
             Miss::Apart(words) => Self::apart(words),
+            Miss::Contested(words) => Self::refused(words),
         }
     }
 }
@@ -96,7 +118,10 @@ pub(super) struct Whereabouts {
     topics: Vec<Topic>,
     chosen: Option<Chosen>,
     wish: Wish,
-    max_gap: u64,
+    home: Home,
+    limits: PoseLimits,
+    /// Longest time between poses that were used though they are farther apart than usual, and the farthest step between them.
+    bridged: Option<(u64, Step)>,
     memory: i64,
     /// The latest time that was asked for since the clock was set back.
     asked: Option<i64>,
@@ -106,9 +131,36 @@ pub(super) struct Whereabouts {
 
 impl Whereabouts {
     /// Nothing is known yet. `memory`: how long after its recording a pose may still be of use, in nanoseconds.
-    pub(super) fn new(track: Option<AnyTrack>, wish: Wish, max_gap: u64, memory: i64) -> Self {
-        let (tree, topics) = (Tree::default(), Vec::new());
-        Self { tree, topics, chosen: track.map(Chosen::Track), wish, max_gap, memory, asked: None, epoch: 0 }
+    pub(super) fn new(track: Option<AnyTrack>, wish: Wish, limits: PoseLimits, memory: i64) -> Self {
+        let home = Home::new(&wish);
+        Self {
+            tree: Tree::default(),
+            topics: Vec::new(),
+            chosen: track.map(Chosen::Track),
+            wish,
+            home,
+            limits,
+            bridged: None,
+            memory,
+            asked: None,
+            epoch: 0,
+        }
+    }
+
+    /// There is a topic that says where things are.
+    pub(super) fn expect(&mut self, topic: &str) {
+        self.home.expect(topic);
+    }
+
+    /// A reading comes under this topic; the words are why it can't be used, which is that it is another robot's.
+    pub(super) fn comes_from(&mut self, topic: &str) -> Result<(), Lost> {
+        if let Some(view) = self.home.settle(topic) {
+            self.tree.look_from(&view);
+        }
+        if self.has_track() {
+            return Ok(());
+        }
+        self.home.check(topic).map_err(|words| Lost::new(Reason::OtherRobot, words))
     }
 
     /// The frame of this name; the words are why it is none.
@@ -120,14 +172,22 @@ impl Whereabouts {
         Keep { from: self.asked, memory: self.memory }
     }
 
-    /// Takes in a transform at its time and the time of its recording; the words are why it can't be.
-    pub(super) fn add_transform(&mut self, said: &Said, times: (i64, i64), hold: Hold) -> Result<(), String> {
+    /// Takes in a transform of a topic at its time and the time of its recording; the words are why it can't be.
+    pub(super) fn add_transform(
+        &mut self,
+        topic: &str,
+        said: &Said,
+        times: (i64, i64),
+        hold: Hold,
+    ) -> Result<(), String> {
+        let Some(group) = self.home.group(topic) else { return Ok(()) };
+        let group = self.tree.group(group)?;
         let (translation, quaternion) = said.placement();
         let described = |words| format!("`{}` in `{}`: {words}", said.child, said.frame);
         let pose = Rigid::new(translation, quaternion).map_err(described)?;
         let frames = [self.tree.frame(&said.frame)?, self.tree.frame(&said.child)?];
         let keep = self.keep();
-        self.tree.add(frames, times, pose, hold, keep)
+        self.tree.add(group, frames, times, pose, hold, keep)
     }
 
     /// Takes in a pose of the robot under a topic; the words are why it can't be.
@@ -183,11 +243,11 @@ impl Whereabouts {
         self.asked = Some(seat.t);
         if let Some(Chosen::Track(track)) = &mut self.chosen {
             let Some(pose) = track.pose_at(self.epoch, seat.t, problems)? else {
-                return Ok(Err(Lost::gap("no pose on both sides")));
+                return Ok(Err(Lost::missing("pose at that time", track.miss())));
             };
             let robot = Rigid::flat(pose.x, pose.y, libm::cos(pose.yaw), libm::sin(pose.yaw));
             let mount = self.mount(seat, None);
-            return Ok(mount.map(|mount| Placed { robot: pose, sensor: robot.of(&mount) }));
+            return Ok(mount.map(|mount| Placed { robot: pose, sensor: robot.of(&mount.0) }));
         }
         if self.chosen.is_none() {
             match self.choose(seat) {
@@ -195,14 +255,69 @@ impl Whereabouts {
                 Err(lost) => return Ok(Err(lost)),
             }
         }
-        Ok(match &self.chosen {
+        let placed = match &self.chosen {
             Some(Chosen::Topic(index)) => match self.topics.get(*index) {
                 Some(topic) => self.by_topic(seat, topic),
                 None => Err(Lost::apart("no poses")),
             },
             Some(Chosen::Tree(fixed)) => self.by_tree(seat, *fixed),
             Some(Chosen::Track(_)) | None => Err(Lost::apart("no poses")),
-        })
+        };
+        Ok(placed.map(|(placed, wide)| {
+            if let Some((within, step)) = wide {
+                Step::note(&mut self.bridged, within, step);
+            }
+            placed
+        }))
+    }
+
+    /// By how much the poses' stamps are later than the times of their recording, in nanoseconds, where a sensor is placed;
+    /// `None` where that is not known. Of several frames on the way the one that comes nearest to `other` counts: a frame that is
+    /// dated ahead on purpose, as localisation does it, is no other clock.
+    pub(super) fn offset(&self, seat: Seat, other: i64) -> Option<i64> {
+        let nearest = |offsets: &mut dyn Iterator<Item = i64>| offsets.min_by_key(|offset| offset.abs_diff(other));
+        match &self.chosen {
+            Some(Chosen::Topic(index)) => self.topics.get(*index)?.history.offset(),
+            Some(Chosen::Tree(fixed)) => {
+                let start = match (seat.mount, seat.frame) {
+                    (None, Some(frame)) => frame,
+                    _ => self.robot_frame(seat).ok()?,
+                };
+                nearest(&mut self.tree.offsets(start, *fixed))
+            }
+            Some(Chosen::Track(_)) | None => None,
+        }
+    }
+
+    /// Longest time between poses that were used though they are farther apart than usual, and the farthest step between them.
+    pub(super) fn bridged(&self) -> Option<(u64, Step)> {
+        match &self.chosen {
+            Some(Chosen::Track(track)) => track.bridged(),
+            _ => self.bridged,
+        }
+    }
+
+    /// Whose poses seem to have two sources, and what speaks for that.
+    pub(super) fn doubted(&self) -> Vec<(String, Doubts)> {
+        match &self.chosen {
+            Some(Chosen::Tree(_)) => {
+                let shown = |(child, parent, doubts)| (format!("transforms of `{child}` in `{parent}`"), doubts);
+                self.tree.doubted().map(shown).collect()
+            }
+            Some(Chosen::Topic(index)) => {
+                let topic = self.topics.get(*index).filter(|topic| topic.history.doubts().are_serious());
+                topic.map(|topic| (format!("poses of {}", topic.name), topic.history.doubts())).into_iter().collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Namespaces other than the readings' whose transforms are used for a sensor.
+    pub(super) fn borrowed(&self, frame: Option<Frame>) -> Vec<&str> {
+        match (&self.chosen, frame) {
+            (Some(Chosen::Tree(_)), Some(frame)) => self.tree.borrowed(frame),
+            _ => Vec::new(),
+        }
     }
 
     /// Decides where the poses come from, once that can be told for one sensor.
@@ -210,8 +325,24 @@ impl Whereabouts {
         let is_wished = |topic: &Topic| self.wish.topic.as_ref().is_none_or(|wish| *wish == topic.name);
         let by_topic = || {
             let topics = self.topics.iter().enumerate().filter(|(_, topic)| is_wished(topic));
-            let mut usable = topics.map(|(index, topic)| self.mount(seat, topic.child).map(|_| Chosen::Topic(index)));
-            usable.next().unwrap_or_else(|| Err(Lost::gap("no poses yet")))
+            let near = topics.filter_map(|(index, topic)| Some((self.home.nearness(&topic.name)?, index, topic)));
+            let mut near: Vec<_> = near.collect();
+            near.sort_by_key(|(nearness, _, topic)| (rank(topic).0, rank(topic).1, std::cmp::Reverse(*nearness)));
+            if let [(0, _, first), rest @ ..] = &near[..]
+                && let Some((.., twin)) = rest.iter().find(|(_, _, other)| {
+                    other.kind == first.kind
+                        && namespace::are_twins(namespace::of(&other.name), namespace::of(&first.name))
+                })
+            {
+                return Err(Lost::refused(format!(
+                    "{} and {} are of two robots, and to which of them the readings belong can't be told; choose with \
+                     --pose-topic",
+                    first.name, twin.name
+                )));
+            }
+            let mut usable =
+                near.into_iter().map(|(_, index, topic)| self.mount(seat, topic.child).map(|_| Chosen::Topic(index)));
+            usable.next().unwrap_or_else(|| Err(Lost::new(Reason::NoPose, "no poses yet")))
         };
         // A wish for a topic of transforms is one for the tree; that there is such a topic was checked.
         if self.wish.topic.as_ref().is_some_and(|wish| self.topics.iter().any(|topic| topic.name == *wish)) {
@@ -231,10 +362,13 @@ impl Whereabouts {
     /// The fixed frame in which transforms have the sensor, if they do.
     fn tree_for(&self, seat: Seat) -> Result<Frame, Lost> {
         let start = match (seat.mount, seat.frame) {
-            (Some(_), _) => self.robot_frame()?,
+            (Some(_), _) => self.robot_frame(seat)?,
             (None, Some(frame)) => frame,
             (None, None) => return Err(Lost::apart("the reading names no frame; give the sensor's mount with --rig")),
         };
+        if let Some(words) = self.tree.contested(start) {
+            return Err(Lost::refused(words));
+        }
         let path: Vec<Frame> = self.tree.path(start).collect();
         let fixed = match &self.wish.fixed {
             Some(name) => {
@@ -264,9 +398,12 @@ impl Whereabouts {
         }))
     }
 
-    /// The robot's frame, where a rig needs one.
-    fn robot_frame(&self) -> Result<Frame, Lost> {
-        let named = ROBOT.iter().find_map(|name| self.tree.find(name));
+    /// The robot's frame, where a rig needs one. A sensor whose frame has a prefix is on the robot of that prefix.
+    fn robot_frame(&self, seat: Seat) -> Result<Frame, Lost> {
+        let prefix = seat.frame.and_then(|frame| self.tree.name(frame).rsplit_once('/'));
+        let prefixed = |name: &&str| prefix.and_then(|(prefix, _)| self.tree.find(&format!("{prefix}/{name}")));
+        let own = ROBOT.iter().find_map(|name| prefixed(name));
+        let named = own.or_else(|| ROBOT.iter().find_map(|name| self.tree.find(name)));
         let mut moving = self.tree.moving();
         match (named, moving.next(), moving.next()) {
             (Some(frame), ..) | (None, Some(frame), None) => Ok(frame),
@@ -275,16 +412,39 @@ impl Whereabouts {
         }
     }
 
-    fn by_tree(&self, seat: Seat, fixed: Frame) -> Result<Placed, Lost> {
+    fn by_tree(&self, seat: Seat, fixed: Frame) -> Result<(Placed, Wide), Lost> {
         if let Some(mount) = seat.mount {
-            let robot = self.tree.lookup(self.robot_frame()?, fixed, seat.t, self.max_gap).map_err(Lost::missed)?;
-            return Ok(Placed { robot: robot.on_plane(), sensor: robot.of(&mount) });
+            let robot = self.tree.lookup(self.robot_frame(seat)?, fixed, seat.t, &self.limits);
+            let (robot, wide) = robot.map_err(|miss| self.missed(seat, fixed, miss))?;
+            return Ok((Placed { robot: robot.on_plane(), sensor: robot.of(&mount) }, wide));
         }
         let frame = seat.frame.ok_or_else(|| Lost::apart("the reading names no frame"))?;
-        let sensor = self.tree.lookup(frame, fixed, seat.t, self.max_gap).map_err(Lost::missed)?;
-        let robot =
-            self.tree.lookup(self.robot_below(frame, fixed), fixed, seat.t, self.max_gap).map_err(Lost::missed)?;
-        Ok(Placed { robot: robot.on_plane(), sensor })
+        let sensor = self.tree.lookup(frame, fixed, seat.t, &self.limits);
+        let (sensor, wide) = sensor.map_err(|miss| self.missed(seat, fixed, miss))?;
+        let robot = self.tree.lookup(self.robot_below(frame, fixed), fixed, seat.t, &self.limits);
+        let (robot, _) = robot.map_err(Lost::missed)?;
+        Ok((Placed { robot: robot.on_plane(), sensor }, wide))
+    }
+
+    /// Why a sensor is not placed. One that moves in a frame of its own is on another robot.
+    fn missed(&self, seat: Seat, fixed: Frame, miss: Miss) -> Lost {
+        let name = |frame| self.tree.name(frame);
+        match (&miss, self.tree_for(seat)) {
+            (Miss::Apart(_), Ok(own)) if own != fixed && self.wish.fixed.is_none() => Lost::new(
+                Reason::OtherRobot,
+                format!(
+                    "`{}` moves in `{}`, which is not connected to `{}`: another robot? Fuse its readings with --fixed-frame {}",
+                    seat.frame.map_or("the sensor", name),
+                    name(own),
+                    name(fixed),
+                    name(own),
+                ),
+            ),
+            (Miss::Apart(words), _) if seat.mount.is_none() => {
+                Lost::apart(format!("{words}; give the sensor's mount with --rig"))
+            }
+            _ => Lost::missed(miss),
+        }
     }
 
     /// The robot above a sensor's frame: what moves in the fixed frame, whatever moves on the robot.
@@ -293,25 +453,26 @@ impl Whereabouts {
         below.filter(|frame| self.tree.moves(*frame)).last().unwrap_or(frame)
     }
 
-    fn by_topic(&self, seat: Seat, topic: &Topic) -> Result<Placed, Lost> {
-        let robot = topic.history.at(seat.t, self.max_gap);
-        let robot = robot.ok_or_else(|| Lost::gap(format!("no pose of {} on both sides", topic.name)))?;
+    fn by_topic(&self, seat: Seat, topic: &Topic) -> Result<(Placed, Wide), Lost> {
+        let robot = topic.history.at(seat.t, &self.limits);
+        let (robot, wide) =
+            robot.map_err(|miss| Lost::missing(&format!("pose of {} at that time", topic.name), miss))?;
         let robot = match self.wish.fixed.as_deref() {
             Some(name) => {
                 let fixed = self.tree.find(name).ok_or_else(|| Lost::apart(format!("there is no frame `{name}`")))?;
-                let outer = self.tree.lookup(topic.frame, fixed, seat.t, self.max_gap);
-                outer.map_err(Lost::missed)?.of(&robot)
+                let outer = self.tree.lookup(topic.frame, fixed, seat.t, &self.limits);
+                outer.map_err(Lost::missed)?.0.of(&robot)
             }
             None => robot,
         };
-        let mount = self.mount(seat, topic.child)?;
-        Ok(Placed { robot: robot.on_plane(), sensor: robot.of(&mount) })
+        let (mount, _) = self.mount(seat, topic.child)?;
+        Ok((Placed { robot: robot.on_plane(), sensor: robot.of(&mount) }, wide))
     }
 
     /// Where the sensor is on the robot, whose frame is `child` where that is known.
-    fn mount(&self, seat: Seat, child: Option<Frame>) -> Result<Rigid, Lost> {
+    fn mount(&self, seat: Seat, child: Option<Frame>) -> Result<(Rigid, Wide), Lost> {
         if let Some(mount) = seat.mount {
-            return Ok(mount);
+            return Ok((mount, None));
         }
         let none = || Lost::apart("the reading names no frame; give the sensor's mount with --rig");
         let frame = seat.frame.ok_or_else(none)?;
@@ -319,10 +480,10 @@ impl Whereabouts {
             Some(child) => child,
             None => self.robot_of(frame)?,
         };
-        let mount = self.tree.lookup(frame, child, seat.t, self.max_gap);
+        let mount = self.tree.lookup(frame, child, seat.t, &self.limits);
         mount.map_err(|miss| match miss {
             Miss::Apart(words) => Lost::apart(format!("{words}; give the sensor's mount with --rig")),
-            gap => Lost::missed(gap),
+            other => Lost::missed(other),
         })
     }
 
@@ -359,7 +520,7 @@ impl Whereabouts {
             Some(Chosen::Tree(fixed)) => {
                 let robot = match (seat.mount, seat.frame) {
                     (None, Some(frame)) => Some(self.robot_below(frame, *fixed)),
-                    _ => self.robot_frame().ok(),
+                    _ => self.robot_frame(seat).ok(),
                 };
                 (Some(*fixed), robot)
             }

@@ -25,7 +25,8 @@ a reading without crossings falls back to the centre of its cone, and shuts open
 With --estimator consensus the kinds are point, wall and center, and \
 support,against,sigma_azimuth,sigma_range,normal_x,normal_y follow the other columns.")]
 pub struct Fuse {
-    /// The log: a path, or - for standard input. Several with --out-dir
+    /// The log: a path, or - for standard input. Several recordings are the parts of one, in their order; with --out-dir each is a
+    /// log of its own
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<String>,
     /// Where the echoes go: a path, or - for standard output

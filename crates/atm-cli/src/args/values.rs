@@ -6,7 +6,8 @@ use super::local_map::HistoryOption;
 use atm::{
     core::{Beam, Kind, MinAngle, RangeResolution, Reflector, Travel},
     storage::LatestSlots,
-    units,
+    track::MotionLimit,
+    units::{self, Scale},
 };
 
 /// A number of readings, or `auto`.
@@ -61,6 +62,10 @@ pub fn positive_length(text: &str) -> Result<f64, String> {
 
 pub fn positive_speed(text: &str) -> Result<f64, String> {
     positive(units::speed(text).map_err(words)?, text)
+}
+
+pub fn max_speed(text: &str) -> Result<MotionLimit, String> {
+    MotionLimit::new(positive_speed(text)?).ok_or_else(|| format!("{text} is not positive"))
 }
 
 pub fn positive_rate(text: &str) -> Result<f64, String> {
@@ -119,4 +124,10 @@ pub fn parameter(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err(format!("{text} is not KEY=VALUE, like opening=36in")),
     }
+}
+
+/// The step in which a log writes lengths: `cm`, `0.25mm`.
+pub fn length_unit(text: &str) -> Result<Scale, String> {
+    let unit = Scale::length(text).map_err(words)?;
+    if unit.apply(1.0) > 0.0 { Ok(unit) } else { Err(format!("{text} is not positive")) }
 }

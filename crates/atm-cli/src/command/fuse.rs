@@ -2,7 +2,8 @@
 mod fleet;
 
 use atm::{
-    core::{DomainError, Kind, MinAngle},
+    core::{DomainError, MinAngle},
+    diagnose::Diagnosis,
     echo::AnyEstimator,
     job::{Ended, FuseJob, LogJob},
     pipeline::{self, Emit, SensorModel, Settings},
@@ -15,18 +16,22 @@ use crate::{
     command, interrupt, is_reader_gone, report,
 };
 
-/// Share of echoes of kind `near` above which a guessed range resolution deserves a word.
-const MANY_NEAR: f64 = 0.2;
-
 /// Runs the command.
 pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     if let Some(directory) = &args.out_dir {
         return fleet::run(args, directory);
     }
-    let [input] = &args.inputs[..] else {
-        return Err(Failure::Usage("several logs are fused into a directory: name it with --out-dir".into()));
+    let [input, parts @ ..] = &args.inputs[..] else {
+        return Err(Failure::Usage("no log is named".into()));
     };
-    let job = job(args, input, args.output.clone())?;
+    if let Some(option) = [(args.passthrough, "--passthrough"), (args.inputs.iter().any(|input| input == "-"), "-")]
+        .into_iter()
+        .find_map(|(given, option)| (given && !parts.is_empty()).then_some(option))
+    {
+        return Err(Failure::Usage(format!("{option}: several recordings can't be read as one like that")));
+    }
+    let mut job = job(args, input, args.output.clone())?;
+    job.log.parts = parts.to_vec();
     let settings = settings(args, &job.log.models()?)?;
     let mut bar = None;
     let mut progress = |bytes, length| {
@@ -37,7 +42,7 @@ pub fn run(args: &Fuse) -> Result<Outcome, Failure> {
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let (words, outcome) = said(args, &job, ended);
+    let (words, outcome) = said(args, ended);
     for word in &words {
         report::say(format_args!("{word}"));
     }
@@ -60,18 +65,14 @@ pub(super) fn job(args: &Fuse, input: &str, output: String) -> Result<FuseJob, F
 }
 
 /// What a person is told of a run that has ended, and how it ended.
-pub(super) fn said(
-    args: &Fuse,
-    job: &FuseJob,
-    ended: atm::error::Result<Ended>,
-) -> (Vec<String>, Result<Outcome, Failure>) {
+pub(super) fn said(args: &Fuse, ended: atm::error::Result<Ended>) -> (Vec<String>, Result<Outcome, Failure>) {
     let Ended { summary, pose_source, notes, result, partials } = match ended {
         Ok(ended) => ended,
         Err(error) => return (Vec::new(), Err(error.into())),
     };
     let mut words = Vec::new();
     if !matches!(&result, Err(error) if is_reader_gone(error)) {
-        words = counted(args, pose_source.as_deref(), &summary, job.log.guesses_resolution());
+        words = counted(args, pose_source.as_deref(), &summary);
         words.extend(notes);
     }
     let outcome = if summary.is_clean() { Outcome::Done } else { Outcome::Partly };
@@ -124,19 +125,15 @@ pub(super) fn settings(args: &Fuse, sensors: &[SensorModel]) -> Result<Settings,
 }
 
 /// What was counted, and what deserves a word.
-fn counted(args: &Fuse, pose_source: Option<&str>, summary: &Summary, guessed: bool) -> Vec<String> {
+fn counted(args: &Fuse, pose_source: Option<&str>, summary: &Summary) -> Vec<String> {
     let mut words = Vec::new();
     if !args.quiet {
         words.extend(pose_source.map(|source| format!("poses     {source}")));
         words.push(report::counts(summary));
     }
     words.extend(report::unusable(&summary.dropped));
-    let (near, total) = (summary.echoes.get(Kind::Near.name()), summary.echoes.total());
-    if guessed && near as f64 > MANY_NEAR * total as f64 {
-        words.push(format!(
-            "warning: {near} of {total} echoes are near; a range resolution of 1in was assumed, say --range-resolution if \
-             the ranges are finer"
-        ));
-    }
+    // Records that can't be used are told of above, each with its place, and what a recording shows in its notes.
+    let told = |found: &&Diagnosis| !matches!(found, Diagnosis::Unusable { .. } | Diagnosis::Recording(_));
+    words.extend(summary.advice.iter().filter(told).map(|found| format!("warning: {found}")));
     words
 }

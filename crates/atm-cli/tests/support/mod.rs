@@ -1,6 +1,7 @@
 //! Runs the command as a user does, and reads what it wrote.
 #![allow(dead_code)] // every test file uses its own part
 
+pub mod cases;
 pub mod fault;
 pub mod recording;
 

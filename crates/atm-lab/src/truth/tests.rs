@@ -17,7 +17,7 @@ fn what_is_written_is_read_back_bit_by_bit() {
         writer.write(*t, sensor, point).unwrap();
     }
     let text = String::from_utf8(writer.into_inner()).unwrap();
-    assert!(text.starts_with("t,sensor,x,y,azimuth,cause\n0,0,0.1,-0.00000025,"), "{text}");
+    assert!(text.starts_with("t,sensor,x,y,azimuth,cause\n0.0,0,0.1,-2.5e-7,"), "{text}");
     let truth = read(&text).unwrap();
     assert_eq!(truth.len(), 2);
     for (t, sensor, point) in &points {

@@ -67,6 +67,8 @@ def fuse_table(table: Any, *, rig: Rig | str | PathLike[str], **options: Any) ->
             count = readings.column_names.count(name)
             raise ValueError(f"table: {count} columns {name!r}, expected one; there are {readings.column_names}")
     time_type = readings.schema.field("t").type
+    if pa.types.is_timestamp(time_type):
+        options["t_unit"] = "ns"
     arrays = {name: _array(readings[name], name) for name in _COLUMNS}
     echoes = fuse(
         arrays["t"], arrays["sensor"], arrays["range"], arrays["x"], arrays["y"], arrays["yaw"], rig=rig, **options

@@ -28,6 +28,7 @@ __version__: str
 
 _Emit = Literal["settled", "latest"]
 _Kind = Literal["median", "single", "center", "near", "pair", "point", "wall"]
+_TimeUnit = Literal["s", "ms", "us", "ns"]
 _Held = Literal["keep", "drop", "edges"]
 _Estimator = Literal["atm", "consensus"]
 _OnNone = Literal["center", "drop"]
@@ -188,6 +189,7 @@ class Fuser:
         yaw: ArrayLike,
         *,
         sensor_index: ArrayLike | None = None,
+        t_unit: _TimeUnit | None = None,
     ) -> list[Echo]: ...
     def finish(self) -> list[Echo]: ...
     def snapshot(self) -> list[Echo]: ...
@@ -218,6 +220,7 @@ def fuse(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | None = None,
+    t_unit: _TimeUnit | None = None,
     reach: float | None = None,
     preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
@@ -242,6 +245,7 @@ def crossings(
     min_step: float | None = None,
     drop_held: bool = False,
     sensor_index: ArrayLike | None = None,
+    t_unit: _TimeUnit | None = None,
     reach: float | None = None,
     preset: Literal["paper"] | None = None,
 ) -> NDArray[np.void]: ...
@@ -285,6 +289,11 @@ def fuse_file(
     estimator: _Estimator = "atm",
     confidence: float | None = None,
     range_error: float | str | None = None,
+    tf_topics: Iterable[str] | str | None = None,
+    scan_topics: Iterable[str] | str | None = None,
+    max_speed: float | str | None = None,
+    range_unit: str | None = None,
+    boresight: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
     reach: float | str | None = None,
     preset: Literal["paper"] | None = None,
 ) -> dict[str, Any]: ...

@@ -14,7 +14,13 @@ pub(super) fn read(kind: Kind, data: &[u8], said: &mut Said, each: &mut dyn FnMu
     if data.len() > LARGEST {
         return Err(format!("it has {} bytes of JSON, more than {} MiB", data.len(), LARGEST >> 20));
     }
-    let value: Value = serde_json::from_slice(data).map_err(|error| format!("it is no JSON: {error}"))?;
+    let value: Value = match serde_json::from_slice(data) {
+        Ok(value) => value,
+        // Python writes numbers that are not finite as bare words.
+        Err(error) => {
+            serde_json::from_slice(&with_quoted_words(data)).map_err(|_| format!("it is no JSON: {error}"))?
+        }
+    };
     let mut one = |kind: Kind, value: &Value| {
         said.clear();
         fill(kind, value, &mut String::new(), DEEPEST, said);
@@ -33,6 +39,28 @@ pub(super) fn read(kind: Kind, data: &[u8], said: &mut Said, each: &mut dyn FnMu
             None => Err(format!("it has no list `{list}`")),
         },
     }
+}
+
+/// The same text with `NaN`, `Infinity` and `-Infinity` in quotes, where they stand bare.
+fn with_quoted_words(data: &[u8]) -> Vec<u8> {
+    const WORDS: [&[u8]; 3] = [b"-Infinity", b"Infinity", b"NaN"];
+    let (mut quoted, mut rest) = (Vec::with_capacity(data.len() + 16), data);
+    let (mut in_text, mut escaped) = (false, false);
+    while let [first, behind @ ..] = rest {
+        let word = WORDS.iter().find(|word| !in_text && rest.starts_with(word));
+        if let Some(word) = word {
+            quoted.push(b'"');
+            quoted.extend_from_slice(word);
+            quoted.push(b'"');
+            rest = rest.get(word.len()..).unwrap_or_default();
+            continue;
+        }
+        in_text ^= *first == b'"' && !escaped;
+        escaped = in_text && *first == b'\\' && !escaped;
+        quoted.push(*first);
+        rest = behind;
+    }
+    quoted
 }
 
 fn fill(kind: Kind, value: &Value, path: &mut String, depth: usize, said: &mut Said) {

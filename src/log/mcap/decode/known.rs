@@ -14,6 +14,17 @@ float32 range
 const TRANSFORMS: &str = "geometry_msgs/TransformStamped[] transforms\n";
 const TRANSFORM: &str = "std_msgs/Header header\nstring child_frame_id\nTransform transform\n";
 const ODOMETRY: &str = "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n";
+const SCAN: &str = "\
+std_msgs/Header header
+float32 angle_min
+float32 angle_max
+float32 angle_increment
+float32 time_increment
+float32 scan_time
+float32 range_min
+float32 range_max
+float32[] ranges
+";
 const POSE: &str = "std_msgs/Header header\nPose pose\n";
 
 /// The types within, each in its own place.
@@ -43,6 +54,7 @@ pub(super) fn definition(name: &str, version: Version) -> Result<String, String>
         "geometry_msgs/TransformStamped" => TRANSFORM,
         "nav_msgs/Odometry" => ODOMETRY,
         "geometry_msgs/PoseStamped" => POSE,
+        "sensor_msgs/LaserScan" => SCAN,
         _ => return Err(format!("its schema is empty, and {name} is not known")),
     };
     let header: &[(&str, &str)] = match version {

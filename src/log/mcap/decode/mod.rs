@@ -10,6 +10,8 @@ mod rosmsg;
 mod said;
 mod wire;
 
+use std::io::Read as _;
+
 pub(super) use self::{
     cloud::{Cloud, CloudType, Sort, Spot},
     said::{Kind, Measured, Said},
@@ -20,10 +22,14 @@ use self::{
     rosmsg::Version,
     wire::Wire,
 };
-use super::raw::Channel;
+use super::{body::WINDOW_LOG_MAX, raw::Channel};
 
 /// Largest schema that is read, in bytes.
 const LARGEST_SCHEMA: usize = 1 << 20;
+/// What a compressed message begins with.
+const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+/// Longest message that is unpacked, in bytes.
+const LARGEST_UNPACKED: u64 = 64 << 20;
 
 /// How messages are encoded, as far as it is known here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,8 +65,10 @@ impl Kind {
             "geometry_msgs/TransformStamped" | "foxglove/FrameTransform" => Self::Transform,
             "nav_msgs/Odometry" => Self::Odometry,
             "geometry_msgs/PoseStamped" | "foxglove/PoseInFrame" => Self::Pose,
+            "sensor_msgs/LaserScan" if matches!(encoding, Encoding::Cdr | Encoding::Ros1) => Self::Scan,
             _ if schema.data.len() > LARGEST_SCHEMA => return None,
             _ if encoding == Encoding::Json && json::is_range(&schema.data) => Self::Range,
+            _ if matches!(encoding, Encoding::Cdr | Encoding::Ros1) && lists_ranges(&schema.data) => Self::Ranges,
             _ if encoding == Encoding::Protobuf && protobuf::is_range(&schema.name, &schema.data) => Self::Range,
             _ => return None,
         })
@@ -109,6 +117,14 @@ impl Decoder {
     /// Reads a message: calls `each` with what it says, once for each element of a list. The words are why it can't be read on;
     /// what came before that was said.
     pub(super) fn read(&self, data: &[u8], said: &mut Said, each: &mut dyn FnMut(&mut Said)) -> Result<(), String> {
+        let unpacked;
+        // CDR and JSON never begin like that: the recorder has compressed message by message.
+        let data = if data.starts_with(&ZSTD_MAGIC) && matches!(self.way, Way::Cdr(_) | Way::Json) {
+            unpacked = unpack(data)?;
+            &unpacked
+        } else {
+            data
+        };
         match &self.way {
             Way::Cdr(plan) => plan.read(&mut Wire::cdr(data)?, said, each),
             Way::Ros1(plan) => plan.read(&mut Wire::ros1(data), said, each),
@@ -118,6 +134,30 @@ impl Decoder {
     }
 }
 
+/// What a message in zstd holds; the words are why it can't be unpacked.
+fn unpack(data: &[u8]) -> Result<Vec<u8>, String> {
+    let failed = |error: std::io::Error| format!("it is compressed by zstd, and can't be unpacked: {error}");
+    let mut decoder = zstd::Decoder::with_buffer(data).map_err(failed)?;
+    decoder.window_log_max(WINDOW_LOG_MAX).map_err(failed)?;
+    let mut unpacked = Vec::new();
+    decoder.take(LARGEST_UNPACKED + 1).read_to_end(&mut unpacked).map_err(failed)?;
+    match unpacked.len() as u64 > LARGEST_UNPACKED {
+        true => Err(format!("it is compressed by zstd, and unpacked longer than {} MiB", LARGEST_UNPACKED >> 20)),
+        false => Ok(unpacked),
+    }
+}
+
+/// Whether a ROS schema has a list of readings.
+fn lists_ranges(schema: &[u8]) -> bool {
+    const LISTS: [&str; 4] = [
+        "sensor_msgs/Range[",
+        "sensor_msgs/msg/Range[",
+        "sequence<sensor_msgs::msg::Range",
+        "sequence<sensor_msgs/msg/Range",
+    ];
+    LISTS.iter().any(|list| memchr::memmem::find(schema, list.as_bytes()).is_some())
+}
+
 /// The types of a ROS schema.
 fn definitions(encoding: Encoding, name: &str, language: &str, data: &[u8]) -> Result<Definitions, String> {
     let text = std::str::from_utf8(data).map_err(|_| "its schema is no UTF-8 text")?;
@@ -125,7 +165,7 @@ fn definitions(encoding: Encoding, name: &str, language: &str, data: &[u8]) -> R
     match (language, encoding) {
         // Early recorders left the description out: what is read stands at the same place in all releases.
         _ if text.trim().is_empty() => rosmsg::parse(name, &known::definition(name, version)?, version),
-        ("ros2idl", Encoding::Cdr) => idl::parse(text),
+        ("ros2idl" | "omgidl", Encoding::Cdr) => idl::parse(text),
         ("ros2msg", Encoding::Cdr) | ("ros1msg", Encoding::Ros1) => rosmsg::parse(name, text, version),
         _ => Err(format!("a schema in {language} describes no {encoding:?}")),
     }

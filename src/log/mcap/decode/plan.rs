@@ -1,8 +1,8 @@
 //! How to walk through the messages of one ROS type: a schema, with where the wanted values stand.
 
 use super::{
-    definition::{Base, Count, Definitions, Field, Scalar},
-    said::{Found, Kind, Said, Slot},
+    definition::{Base, Count, Definitions, Field, Scalar, short},
+    said::{Found, Kind, MOST_VALUES, Said, Slot},
     wire::{Number, Wire},
 };
 
@@ -21,6 +21,8 @@ enum Node {
     List(Box<Node>),
     /// The list whose elements are read one by one.
     Each(Box<Node>),
+    /// A list of numbers that are wanted.
+    Values(Scalar),
     Opaque(String),
 }
 
@@ -84,7 +86,17 @@ impl Builder<'_> {
         self.room = self.room.checked_sub(1).ok_or_else(|| format!("it has more than {MOST} fields"))?;
         let path = path.map(|path| if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) });
         let path = path.as_deref();
-        let listed = self.kind.list().filter(|(list, _)| field.count == Count::Counted && path == Some(list));
+        let is_readings = matches!(&field.base, Base::Named(name) if short(name) == "sensor_msgs/Range");
+        let listed = self.kind.list().filter(|(list, _)| {
+            let is_it = if self.kind == Kind::Ranges { is_readings && depth == 0 } else { path == Some(list) };
+            field.count == Count::Counted && is_it
+        });
+        if let (Base::Scalar(scalar @ (Scalar::F32 | Scalar::F64)), Count::Counted) = (&field.base, field.count)
+            && path.and_then(|path| self.kind.slot(path)) == Some(Slot::Values)
+        {
+            self.found.add(Slot::Values);
+            return Ok(Node::Values(*scalar));
+        }
         let outer = self.kind;
         let inner = match (listed, field.count) {
             (Some((_, element)), _) => {
@@ -132,7 +144,7 @@ fn fits(scalar: Scalar, slot: Slot) -> bool {
         Slot::Stamp => scalar == Scalar::Time,
         Slot::Seconds | Slot::Nanoseconds => !real && scalar != Scalar::Time,
         Slot::Number(_) => real,
-        Slot::Frame | Slot::Child => false,
+        Slot::Frame | Slot::Child | Slot::Values => false,
     }
 }
 
@@ -140,7 +152,7 @@ fn is_wanted(node: &Node) -> bool {
     match node {
         Node::Scalar(_, slot) | Node::Text(slot) => slot.is_some(),
         Node::Struct(nodes) => nodes.iter().any(is_wanted),
-        Node::Each(_) => true,
+        Node::Each(_) | Node::Values(_) => true,
         Node::Fixed(..) | Node::List(_) | Node::Opaque(_) => false,
     }
 }
@@ -162,7 +174,7 @@ fn opaque(node: &Node) -> Option<&str> {
         Node::Opaque(what) => Some(what),
         Node::Struct(nodes) => nodes.iter().find_map(opaque),
         Node::Fixed(node, _) | Node::List(node) | Node::Each(node) => opaque(node),
-        Node::Scalar(..) | Node::Text(_) => None,
+        Node::Scalar(..) | Node::Text(_) | Node::Values(_) => None,
     }
 }
 
@@ -200,6 +212,20 @@ fn walk(node: &Node, wire: &mut Wire<'_>, said: &mut Said, each: &mut dyn FnMut(
                 walk(node, wire, said, each)?;
                 each(said);
             }
+            Ok(())
+        }
+        Node::Values(scalar) => {
+            let count = wire.count()?;
+            if count > MOST_VALUES {
+                return Err(format!("it has {count} beams: more than {MOST_VALUES} are a lidar's, which are no cones"));
+            }
+            let mut values = [0.0; MOST_VALUES];
+            for value in values.iter_mut().take(count) {
+                if let Number::Real(real) = wire.number(*scalar)? {
+                    *value = real;
+                }
+            }
+            said.set_values(values.into_iter().take(count));
             Ok(())
         }
         Node::Opaque(what) => Err(format!("{what} can't be passed over")),

@@ -246,7 +246,7 @@ fn fits(value: u64, slot: Slot) -> bool {
         Slot::Number(_) => matches!(value, kind::DOUBLE | kind::FLOAT),
         // Neither bytes nor groups nor messages nor real numbers.
         Slot::Seconds | Slot::Nanoseconds => matches!(value, 3..=7 | 13 | 15..=18),
-        Slot::Stamp => false,
+        Slot::Stamp | Slot::Values => false,
     }
 }
 

@@ -122,7 +122,7 @@ fn fuse(args: &Fuse, job: &FuseJob, settings: &Settings, bar: &ProgressBar) -> T
         done = done.max(bytes);
         interrupt::caught().is_none()
     });
-    said(args, job, run)
+    said(args, run)
 }
 
 /// Says what there is to say of one log, under its name.
