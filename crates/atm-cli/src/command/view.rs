@@ -95,7 +95,13 @@ fn job(args: &View, typed: &[OsString]) -> Result<ViewJob, Failure> {
     let bounds = Bounds::NONE.with_held(held);
     Ok(ViewJob {
         log: LogJob { opens: interrupt::open, ..args.log.job(&args.input, args.from, args.range_resolution)? },
-        settings: Settings { emit: Emit::Settled, history: args.local_map.history(), bounds, estimator: median, strict: false },
+        settings: Settings {
+            emit: Emit::Settled,
+            history: args.local_map.history(),
+            bounds,
+            estimator: median,
+            strict: false,
+        },
         estimators,
         methods,
         command: line(typed),
