@@ -2,7 +2,10 @@
 
 use nalgebra::{Isometry2, Point2, Vector2};
 
-use crate::{scalar::Scalar, sensor::Beam};
+use crate::{
+    scalar::Scalar,
+    sensor::{Beam, RangeResolution},
+};
 
 /// Cross product of plane vectors: positive where `b` lies counter-clockwise of `a`.
 #[inline(always)]
@@ -80,6 +83,42 @@ impl<T: Scalar> Arc<T> {
         let axis = self.axis();
         let aside = Vector2::new(-axis.y, axis.x);
         self.sensor + (axis * bearing.cos + aside * bearing.sin)
+    }
+}
+
+/// An arc that is being reported, with what its reading and sensor say of it.
+#[derive(Debug, Clone, Copy)]
+pub struct ReportedArc<T: Scalar> {
+    /// The arc.
+    pub arc: Arc<T>,
+    /// The reading's time, in nanoseconds.
+    pub t: i64,
+    /// The sensor's index.
+    pub sensor: u16,
+    /// The beam's full angle φ, in radians.
+    pub field_of_view: T,
+    /// δ, the range resolution.
+    pub range_resolution: RangeResolution<T>,
+}
+
+impl<T: Scalar> ReportedArc<T> {
+    /// No arc: nothing crosses it.
+    pub(crate) const NONE: Self = Self {
+        arc: Arc {
+            sensor: Point2::new(T::NAN, T::NAN),
+            middle: Point2::new(T::NAN, T::NAN),
+            radius: T::NAN,
+            reach: T::NAN,
+        },
+        t: 0,
+        sensor: 0,
+        field_of_view: T::ZERO,
+        range_resolution: RangeResolution::STEP,
+    };
+
+    /// φ r, the length of the arc, in metres.
+    pub fn arc_length(&self) -> T {
+        self.field_of_view * self.arc.radius
     }
 }
 

@@ -5,8 +5,7 @@ use core::ops::Range;
 use nalgebra::{Point2, Vector2};
 
 use crate::{
-    arc::{Arc, dot},
-    estimator::ReportedArc,
+    arc::{Arc, ReportedArc, dot},
     pose::Travel,
     scalar::Scalar,
     sensor::{Beam, RangeResolution},

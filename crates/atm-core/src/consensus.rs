@@ -18,10 +18,10 @@ use self::{
     witness::{Tolerance, Vote},
 };
 use crate::{
-    arc::{Bearing, cross},
+    arc::{Bearing, ReportedArc, cross},
     crossing::{Crossing, MinAngle},
     error::DomainError,
-    estimator::{Estimator, ReportedArc, Verdict},
+    estimator::{Estimator, Verdict},
     partners::Partners,
     resolution::interval,
     scalar::Scalar,

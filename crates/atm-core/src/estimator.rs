@@ -1,32 +1,14 @@
 //! The arc-transversal median of one arc, and the seam at which another estimator can take its place.
 
-use nalgebra::Point2;
-
 use crate::{
-    arc::{Arc, Bearing},
+    arc::{Bearing, ReportedArc},
     crossing::{Crossing, MinAngle, crossings},
     echo::{Echo, Kind},
     median::middle_two,
     partners::Partners,
     resolution::interval,
     scalar::{Scalar, sine_cosine_in_quadrant},
-    sensor::RangeResolution,
 };
-
-/// An arc that is being reported, with what its reading and sensor say of it.
-#[derive(Debug, Clone, Copy)]
-pub struct ReportedArc<T: Scalar> {
-    /// The arc.
-    pub arc: Arc<T>,
-    /// The reading's time, in nanoseconds.
-    pub t: i64,
-    /// The sensor's index.
-    pub sensor: u16,
-    /// The beam's full angle φ, in radians.
-    pub field_of_view: T,
-    /// δ, the range resolution.
-    pub range_resolution: RangeResolution<T>,
-}
 
 /// What an arc gives.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,27 +104,6 @@ impl<T: Scalar> TransversalMedian<T> {
             }
             _ => arc.arc_length(),
         }
-    }
-}
-
-impl<T: Scalar> ReportedArc<T> {
-    /// No arc: nothing crosses it.
-    pub(crate) const NONE: Self = Self {
-        arc: Arc {
-            sensor: Point2::new(T::NAN, T::NAN),
-            middle: Point2::new(T::NAN, T::NAN),
-            radius: T::NAN,
-            reach: T::NAN,
-        },
-        t: 0,
-        sensor: 0,
-        field_of_view: T::ZERO,
-        range_resolution: RangeResolution::STEP,
-    };
-
-    /// φ r, the length of the arc, in metres.
-    pub fn arc_length(&self) -> T {
-        self.field_of_view * self.arc.radius
     }
 }
 

@@ -3,10 +3,10 @@
 use nalgebra::{Isometry2, Point2, Vector2};
 
 use crate::{
-    arc::{Arc, Bearing},
+    arc::{Arc, Bearing, ReportedArc},
     columns::{Entry, Waiting},
     error::Rejected,
-    estimator::{Estimator, ReportedArc, TransversalMedian, Verdict},
+    estimator::{Estimator, TransversalMedian, Verdict},
     local_map::{Bounds, Held, LocalMap, Newcomer, Span},
     partners::{Partners, Scope},
     pose::{Odometer, Travel, usable},

@@ -82,13 +82,13 @@ mod sweep;
 pub use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 
 pub use crate::{
-    arc::{Arc, Bearing},
+    arc::{Arc, Bearing, ReportedArc},
     columns::{Columns, Ring, Waiting},
     consensus::{Consensus, ConsensusEcho, Reflector},
     crossing::{Crossing, MinAngle, crossings},
     echo::{Echo, Kind},
     error::{DomainError, Rejected},
-    estimator::{Estimator, OnNone, OnTwo, ReportedArc, TransversalMedian, Verdict},
+    estimator::{Estimator, OnNone, OnTwo, TransversalMedian, Verdict},
     fuser::{ArcCrossing, Arrival, Fuser, Reading, Sink},
     local_map::{Bounds, Held, Span},
     median::median,

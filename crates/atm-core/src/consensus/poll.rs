@@ -7,7 +7,11 @@ use super::{
     fit::Shape,
     witness::{Tolerance, Vote, Witness},
 };
-use crate::{arc::dot, estimator::ReportedArc, partners::Partners, scalar::Scalar};
+use crate::{
+    arc::{ReportedArc, dot},
+    partners::Partners,
+    scalar::Scalar,
+};
 
 /// So many votes are one bit: they double or halve the odds of an azimuth.
 pub(super) const BIT: u32 = 16;

@@ -290,9 +290,10 @@ impl EchoSink for Gathering {
             self.nth.resize(sensor + 1, 0);
         }
         let nth = self.nth.get_mut(sensor).map_or(0, |next| std::mem::replace(next, *next + 1));
-        if self.shots.len() >= self.most {
+        if nth.is_multiple_of(self.stride) && self.shots.len() >= self.most {
             self.halve();
         }
+        // Just halved, it may be that the reading is no longer due.
         if !nth.is_multiple_of(self.stride) {
             return Ok(());
         }

@@ -69,10 +69,10 @@ fn the_sample_is_a_page_of_at_most_400_kb_with_all_its_echoes() {
 fn more_readings_than_wanted_are_thinned_evenly_by_sensor() {
     let replay = ViewJob { most: 100, ..job(DOORWAY) }.run(&mut |_, _| true).unwrap();
     let said = said(&replay.html);
-    assert_eq!(said["thinned"], serde_json::json!({ "stride": 8, "readings": 784 }));
+    assert_eq!(said["thinned"], serde_json::json!({ "stride": 16, "readings": 784 }));
     let list = said["columns"]["list"].as_array().unwrap();
-    // 49 readings of each of the 16 sensors, of which every eighth is kept: 7 of each.
-    assert_eq!(list.iter().find(|column| column["name"] == "reading.range").unwrap()["count"], 16 * 7);
+    // 49 readings of each of the 16 sensors: every eighth would be 112, every sixteenth is 64.
+    assert_eq!(list.iter().find(|column| column["name"] == "reading.range").unwrap()["count"], 16 * 4);
     // What was counted is of the whole log.
     assert_eq!(said["methods"][1]["counts"]["echoes"]["median"], 122);
 }
@@ -124,4 +124,39 @@ fn a_log_without_readings_has_no_replay() {
 fn a_command_line_can_be_typed_again() {
     assert_eq!(quoted(["atm", "view", "it's here.csv", ""]), r"atm view 'it'\''s here.csv' ''");
     assert_eq!(quoted(["--set", "opening=36in"]), "--set opening=36in");
+}
+
+/// The drive as it is gathered, of at most so many readings.
+fn gathered(most: usize) -> Gathering {
+    let (job, mut drive) = (job(DOORWAY), Gathering::new(most));
+    job.pass(AnyEstimator::PAPER, &mut drive, &mut |_, _| true, None).unwrap();
+    drive.finish();
+    drive
+}
+
+#[test]
+fn what_is_kept_of_a_thinned_drive_is_what_it_was() {
+    use std::collections::BTreeSet;
+    let (whole, thin) = (gathered(10_000), gathered(300));
+    let key = |drive: &Gathering, shot: u32| {
+        let shot = drive.shots[shot as usize];
+        (drive.places[shot.pose as usize].t, shot.sensor, shot.range)
+    };
+    let shots =
+        |drive: &Gathering| -> BTreeSet<_> { (0..drive.shots.len() as u32).map(|shot| key(drive, shot)).collect() };
+    let kept = shots(&thin);
+    assert_eq!(thin.stride, 4);
+    assert!(kept.is_subset(&shots(&whole)) && kept.len() == thin.shots.len());
+    let found = |drive: &Gathering| -> BTreeSet<_> {
+        let found =
+            drive.found.iter().map(|found| (key(drive, found.shot), found.kind, found.azimuth, found.crossings));
+        found.filter(|(key, ..)| kept.contains(key)).collect()
+    };
+    assert!(found(&thin) == found(&whole) && !found(&thin).is_empty());
+    let meetings = |drive: &Gathering| -> BTreeSet<_> {
+        let ends = drive.meetings.iter().map(|one| (key(drive, one.on), key(drive, one.with), one.azimuth));
+        ends.filter(|(on, with, _)| kept.contains(on) && kept.contains(with)).collect()
+    };
+    assert!(meetings(&thin) == meetings(&whole) && !meetings(&thin).is_empty());
+    assert!(thin.shots.iter().all(|shot| shot.left >= shot.pose && (shot.left as usize) < thin.places.len()));
 }
