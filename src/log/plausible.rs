@@ -141,11 +141,11 @@ mod tests {
     const S: i64 = 1_000_000_000;
 
     /// A log of nothing but poses: seconds and x.
-    struct Poses(std::vec::IntoIter<(f64, f64)>);
+    struct Poses<'a>(std::slice::Iter<'a, (f64, f64)>);
 
-    impl Source for Poses {
+    impl Source for Poses<'_> {
         fn next_row(&mut self, row: &mut Row, _: &mut dyn FnMut(Problem)) -> Result<Next> {
-            let Some((t, x)) = self.0.next() else { return Ok(Next::End) };
+            let Some(&(t, x)) = self.0.next() else { return Ok(Next::End) };
             row.t = (t * S as f64) as i64;
             row.pose = Some(Pose { x, y: 0.0, yaw: 0.0 });
             Ok(Next::Record)
@@ -170,7 +170,7 @@ mod tests {
 
     /// The x of the records that are used.
     fn used(poses: &[(f64, f64)]) -> Vec<f64> {
-        let mut log = Poses(poses.to_vec().into_iter());
+        let mut log = Poses(poses.iter());
         let mut log = Plausible::new(&mut log, MotionLimit::DEFAULT);
         let (mut row, mut used, mut problems) = (Row::default(), Vec::new(), 0);
         loop {
