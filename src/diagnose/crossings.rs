@@ -5,9 +5,9 @@ use std::{collections::VecDeque, f64::consts::PI};
 use atm_core::{Arc, MinAngle, crossings};
 
 /// Arcs that are kept to be crossed.
-const KEPT: usize = 256;
+const KEPT: usize = 128;
 /// Every so many echoes one is crossed with those: often at first, so that short logs have their say.
-const DENSE: u64 = 16;
+const DENSE: u64 = 64;
 const SPARSE: u64 = 256;
 /// Up to so many echoes it is often.
 const MANY: u64 = 4096;

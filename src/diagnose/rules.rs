@@ -159,14 +159,15 @@ fn ranges(evidence: &Evidence) -> Option<Diagnosis> {
     if readings < FEWEST {
         return None;
     }
-    let all = all_ranges(evidence);
-    let median = all.quantile(0.5, 0.0, f64::INFINITY).unwrap_or(0.0);
     let max = evidence.reach().unwrap_or(f64::INFINITY);
-    // A sensor that says its maximum where there is nothing is in order; one that says ten times as much is not.
-    let is_far = median > 1.5 * max || median > 300.0;
-    if finite >= FEWEST && is_far && (beyond as f64 > NEARLY_ALL * finite as f64 || !max.is_finite()) {
-        let unit = fitting_unit(&all, max);
-        return Some(Diagnosis::RangeUnit { beyond, ranges: finite, max, median, unit });
+    if finite >= FEWEST && (beyond as f64 > NEARLY_ALL * finite as f64 || !max.is_finite()) {
+        let all = all_ranges(evidence);
+        let median = all.quantile(0.5, 0.0, f64::INFINITY).unwrap_or(0.0);
+        // A sensor that says its maximum where there is nothing is in order; one that says much more is not.
+        if median > 1.5 * max || median > 300.0 {
+            let unit = fitting_unit(&all, max);
+            return Some(Diagnosis::RangeUnit { beyond, ranges: finite, max, median, unit });
+        }
     }
     let min = evidence.sensors.iter().filter_map(|sensor| sensor.sight).map(|(limits, _)| limits.min());
     if close as f64 > NEARLY_ALL * readings as f64 {

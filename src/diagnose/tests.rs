@@ -333,12 +333,11 @@ fn the_sample_of_arcs_tells_those_that_nothing_crosses() {
     let mut drive = Drive::straight().ranges(|_, _, _| 2.0);
     drive.rows.iter_mut().for_each(|row| row.readings.truncate(1));
     let crossings = drive.evidence().crossings;
-    assert!(crossings.arcs > 5);
+    assert!(crossings.arcs > 0);
     assert_eq!((crossings.uncrossed, crossings.shallow), (crossings.arcs, 0));
     // To the side they cross, near their middles at small angles.
     let mut aside = Drive::straight().ranges(|_, _, _| 3.9);
     aside.rows.iter_mut().for_each(|row| row.readings = vec![(1, 3.9)]);
-    aside.rows.truncate(20);
     let crossings = aside.evidence().crossings;
     assert!(crossings.arcs > 0 && crossings.shallow == crossings.arcs, "{crossings:?}");
 }
