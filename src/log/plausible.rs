@@ -1,6 +1,6 @@
 //! A log whose own poses are looked at: those that no robot can have reached are not used.
 
-use std::sync::Arc;
+use std::{collections::VecDeque, sync::Arc};
 
 use super::{Next, Row, Source};
 use crate::{
@@ -12,39 +12,69 @@ use crate::{
 /// A time in nanoseconds, and where the robot was.
 type At = (i64, Pose);
 
-/// A log of which records are left out whose pose can't be reached from the one before.
+/// Records of one time that wait for the next, at most: more are used as they are.
+const MOST: usize = 1 << 12;
+
+/// A log of which records are left out whose pose lies off the way: it can't be reached from the one before, and the one behind it
+/// can't be reached from it.
 ///
-/// A later record near a pose that was left out means that the robot is there: it was moved, or its odometry began anew. Records of
+/// A later record near such a pose means that the robot was moved, or that its odometry began anew: then both are used. Records of
 /// one time are not compared, and none of a log that places its readings itself.
 pub(crate) struct Plausible<'a> {
     log: &'a mut dyn Source,
     limit: MotionLimit,
     last: Option<At>,
     suspect: Option<At>,
+    /// Records of the suspect pose's time.
+    held: Vec<Row>,
+    /// Records that turned out to be in order, before the log goes on.
+    ready: VecDeque<Row>,
 }
 
 impl<'a> Plausible<'a> {
     pub(crate) fn new(log: &'a mut dyn Source, limit: MotionLimit) -> Self {
-        Self { log, limit, last: None, suspect: None }
+        Self { log, limit, last: None, suspect: None, held: Vec::new(), ready: VecDeque::new() }
     }
 
-    /// Whether a robot can be there; else how it would have had to move.
-    fn check(&mut self, at: At) -> Result<(), PoseMiss> {
-        let reached = |from: &Option<At>| from.as_ref().is_none_or(|from| self.allows(from, &at));
-        let is_confirmed = || self.suspect.is_some_and(|suspect| suspect.0 < at.0 && self.allows(&suspect, &at));
-        match self.last {
-            Some(last) if !reached(&self.last) && !is_confirmed() => {
-                if self.suspect.is_none_or(|suspect| suspect.0 != at.0) {
-                    self.suspect = Some(at);
-                }
-                Err(PoseMiss::TooFast { step: last.1.step_to(&at.1), within: at.0.abs_diff(last.0) })
+    /// Takes a record in: into [`Self::ready`] once it is known to be in order.
+    fn take(&mut self, row: &Row, pose: Pose, problems: &mut dyn FnMut(Problem)) {
+        let at = (row.t, pose);
+        if self.suspect.is_some_and(|suspect| suspect.0 == at.0) && self.held.len() < MOST {
+            self.held.push(row.clone());
+            return;
+        }
+        let is_reached = self.last.is_none_or(|last| self.allows(&last, &at));
+        // With time enough it may be reached from both: then the nearer one tells where the robot is.
+        let far = |from: At| {
+            let step = from.1.step_to(&at.1);
+            step.distance + step.turn
+        };
+        let is_nearer = |suspect: At| self.last.is_none_or(|last| far(suspect) < far(last));
+        if self.suspect.is_some_and(|suspect| self.allows(&suspect, &at) && is_nearer(suspect)) {
+            self.ready.extend(self.held.drain(..));
+        } else {
+            self.drop_held(problems);
+            if !is_reached {
+                self.suspect = Some(at);
+                self.held.push(row.clone());
+                return;
             }
-            // Of one time the first pose counts: what comes next is held against it.
-            Some(last) if last.0 == at.0 => Ok(()),
-            _ => {
-                (self.last, self.suspect) = (Some(at), None);
-                Ok(())
-            }
+        }
+        self.suspect = None;
+        // Of one time the first pose counts: what comes next is held against it.
+        if self.last.is_none_or(|last| last.0 != at.0) {
+            self.last = Some(at);
+        }
+        self.ready.push_back(row.clone());
+    }
+
+    /// What is held is off the way.
+    fn drop_held(&mut self, problems: &mut dyn FnMut(Problem)) {
+        let Some((last, suspect)) = self.last.zip(self.suspect.take()) else { return };
+        let miss = PoseMiss::TooFast { step: last.1.step_to(&suspect.1), within: suspect.0.abs_diff(last.0) };
+        for row in self.held.drain(..) {
+            let value = format!("t {}: after the pose before it, {miss}", stamp::text(row.t));
+            problems(Problem { reason: Reason::ImpossibleMotion, place: row.place, value });
         }
     }
 
@@ -56,16 +86,36 @@ impl<'a> Plausible<'a> {
 
 impl Source for Plausible<'_> {
     fn next_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Next> {
+        if let Some(ready) = self.ready.pop_front() {
+            *row = ready;
+            return Ok(Next::Record);
+        }
         let next = self.log.next_row(row, problems)?;
+        if next == Next::End {
+            self.drop_held(problems);
+            return Ok(next);
+        }
         let Some(pose) = row.pose.filter(|_| next == Next::Record && row.views.is_empty()) else { return Ok(next) };
-        let Err(miss) = self.check((row.t, pose)) else { return Ok(next) };
-        let value = format!("t {}: after the pose before it, {miss}", stamp::text(row.t));
-        problems(Problem { reason: Reason::ImpossibleMotion, place: row.place.clone(), value });
-        Ok(Next::Unusable)
+        // The usual case, without a copy.
+        let at = (row.t, pose);
+        if self.suspect.is_none() && self.last.is_none_or(|last| self.allows(&last, &at)) {
+            if self.last.is_none_or(|last| last.0 != at.0) {
+                self.last = Some(at);
+            }
+            return Ok(next);
+        }
+        self.take(row, pose, problems);
+        match self.ready.pop_front() {
+            Some(ready) => {
+                *row = ready;
+                Ok(Next::Record)
+            }
+            None => Ok(Next::Unusable),
+        }
     }
 
     fn drained(&self) -> bool {
-        self.log.drained()
+        self.ready.is_empty() && self.log.drained()
     }
 
     fn position(&self) -> u64 {
@@ -137,9 +187,11 @@ mod tests {
     }
 
     #[test]
-    fn of_a_robot_that_was_moved_one_time_is_left_out() {
+    fn of_a_robot_that_was_moved_nothing_is_left_out() {
         let moved = [(0.0, 0.0), (0.1, 9.0), (0.1, 9.0), (0.2, 9.1), (0.3, 9.2)];
-        assert_eq!(used(&moved), [0.0, 9.1, 9.2]);
+        assert_eq!(used(&moved), [0.0, 9.0, 9.0, 9.1, 9.2]);
+        // Nothing confirms what is last.
+        assert_eq!(used(&[(0.0, 0.0), (0.1, 0.1), (0.2, 41.0)]), [0.0, 0.1]);
     }
 
     #[test]
