@@ -13,100 +13,102 @@ use crate::{
 /// A time in nanoseconds, and where the robot was.
 type At = (i64, Pose);
 
-/// A log of which records are left out whose pose can't be reached from the one before.
+/// Records of one time that wait for the next, at most: more are used as they are.
+const MOST: usize = 1 << 12;
+
+/// A log of which records are left out whose pose lies off the way: it can't be reached from the one before, and the one behind it
+/// can't be reached from it.
 ///
-/// Such a record waits for the next pose. A pose near it means that the robot is there: it was moved, or its odometry began anew, and
-/// the record is used. One near the pose before means that it was a mistake. Records of one time are not compared, and none of a log
-/// that places its readings itself.
+/// A later record near such a pose means that the robot was moved, or that its odometry began anew: then both are used. Records of
+/// one time are not compared, and none of a log that places its readings itself.
 pub(crate) struct Plausible<'a> {
     log: &'a mut dyn Source,
     limit: MotionLimit,
     last: Option<At>,
-    /// Records of one time that can't be reached.
-    suspects: VecDeque<Row>,
-    /// Records that were found to be in order.
+    suspect: Option<At>,
+    /// Records of the suspect pose's time.
+    held: Vec<Row>,
+    /// Records that turned out to be in order, before the log goes on.
     ready: VecDeque<Row>,
 }
 
 impl<'a> Plausible<'a> {
     pub(crate) fn new(log: &'a mut dyn Source, limit: MotionLimit) -> Self {
-        Self { log, limit, last: None, suspects: VecDeque::new(), ready: VecDeque::new() }
+        Self { log, limit, last: None, suspect: None, held: Vec::new(), ready: VecDeque::new() }
+    }
+
+    /// Takes a record in: into [`Self::ready`] once it is known to be in order.
+    fn take(&mut self, row: &Row, pose: Pose, problems: &mut dyn FnMut(Problem)) {
+        let at = (row.t, pose);
+        if self.suspect.is_some_and(|suspect| suspect.0 == at.0) && self.held.len() < MOST {
+            self.held.push(row.clone());
+            return;
+        }
+        let is_reached = self.last.is_none_or(|last| self.allows(&last, &at));
+        // With time enough it may be reached from both: then the nearer one tells where the robot is.
+        let far = |from: At| {
+            let step = from.1.step_to(&at.1);
+            step.distance + step.turn
+        };
+        let is_nearer = |suspect: At| self.last.is_none_or(|last| far(suspect) < far(last));
+        if self.suspect.is_some_and(|suspect| self.allows(&suspect, &at) && is_nearer(suspect)) {
+            self.ready.extend(self.held.drain(..));
+        } else {
+            self.drop_held(problems);
+            if !is_reached {
+                self.suspect = Some(at);
+                self.held.push(row.clone());
+                return;
+            }
+        }
+        self.suspect = None;
+        // Of one time the first pose counts: what comes next is held against it.
+        if self.last.is_none_or(|last| last.0 != at.0) {
+            self.last = Some(at);
+        }
+        self.ready.push_back(row.clone());
+    }
+
+    /// What is held is off the way.
+    fn drop_held(&mut self, problems: &mut dyn FnMut(Problem)) {
+        let Some((last, suspect)) = self.last.zip(self.suspect.take()) else { return };
+        let miss = PoseMiss::TooFast { step: last.1.step_to(&suspect.1), within: suspect.0.abs_diff(last.0) };
+        for row in self.held.drain(..) {
+            let value = format!("t {}: after the pose before it, {miss}", stamp::text(row.t));
+            problems(Problem { reason: Reason::ImpossibleMotion, place: row.place, value });
+        }
     }
 
     /// Whether the robot can go from one pose to the next. What is not later says nothing of how fast it went.
     fn allows(&self, from: &At, to: &At) -> bool {
         to.0 <= from.0 || self.limit.allows(from.1.step_to(&to.1), to.0.abs_diff(from.0))
     }
-
-    /// When and where the suspects are.
-    fn suspect(&self) -> Option<At> {
-        self.suspects.front().and_then(|row| Some((row.t, row.pose?)))
-    }
-
-    /// Whether a later pose is nearer to the suspects than to the pose before them, and can be reached from there.
-    fn confirms(&self, at: &At) -> bool {
-        let (Some(suspect), Some(last)) = (self.suspect(), self.last) else { return false };
-        let distance = |from: &At| from.1.step_to(&at.1).distance;
-        suspect.0 < at.0 && self.allows(&suspect, at) && distance(&suspect) < distance(&last)
-    }
-
-    /// Leaves the suspects out.
-    fn drop_suspects(&mut self, problems: &mut dyn FnMut(Problem)) {
-        for row in self.suspects.drain(..) {
-            let (Some(last), Some(pose)) = (self.last, row.pose) else { continue };
-            let miss = PoseMiss::TooFast { step: last.1.step_to(&pose), within: row.t.abs_diff(last.0) };
-            let value = format!("t {}: after the pose before it, {miss}", stamp::text(row.t));
-            problems(Problem { reason: Reason::ImpossibleMotion, place: row.place.clone(), value });
-        }
-    }
-
-    /// Decides on a record with a pose, and with it on those that wait; `false` where it has to wait itself.
-    fn admit(&mut self, row: &mut Row, at: At, problems: &mut dyn FnMut(Problem)) -> bool {
-        if !self.confirms(&at) && self.last.is_none_or(|last| self.allows(&last, &at)) {
-            // Another sensor of the suspects' time says nothing of them.
-            if self.suspect().is_none_or(|suspect| suspect.0 != at.0) {
-                self.drop_suspects(problems);
-            }
-            // Of one time the first pose counts: what comes next is held against it.
-            if self.last.is_none_or(|last| last.0 != at.0) {
-                self.last = Some(at);
-            }
-            return true;
-        }
-        match self.suspect() {
-            Some(_) if self.confirms(&at) => {
-                self.ready.append(&mut self.suspects);
-                self.ready.push_back(std::mem::take(row));
-                self.last = Some(at);
-            }
-            Some(suspect) if suspect.0 == at.0 => self.suspects.push_back(std::mem::take(row)),
-            _ => {
-                self.drop_suspects(problems);
-                self.suspects.push_back(std::mem::take(row));
-            }
-        }
-        false
-    }
 }
 
 impl Source for Plausible<'_> {
     fn next_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Next> {
-        if let Some(front) = self.ready.pop_front() {
-            *row = front;
+        if let Some(ready) = self.ready.pop_front() {
+            *row = ready;
             return Ok(Next::Record);
         }
         let next = self.log.next_row(row, problems)?;
         if next == Next::End {
-            self.drop_suspects(problems);
+            self.drop_held(problems);
+            return Ok(next);
         }
         let Some(pose) = row.pose.filter(|_| next == Next::Record && row.views.is_empty()) else { return Ok(next) };
+        // The usual case, without a copy.
         let at = (row.t, pose);
-        if self.admit(row, at, problems) {
-            return Ok(Next::Record);
+        if self.suspect.is_none() && self.last.is_none_or(|last| self.allows(&last, &at)) {
+            if self.last.is_none_or(|last| last.0 != at.0) {
+                self.last = Some(at);
+            }
+            return Ok(next);
         }
+        self.take(row, pose, problems);
         match self.ready.pop_front() {
-            Some(front) => {
-                *row = front;
+            Some(ready) => {
+                *row = ready;
                 Ok(Next::Record)
             }
             None => Ok(Next::Unusable),
@@ -190,9 +192,11 @@ mod tests {
     }
 
     #[test]
-    fn of_a_robot_that_was_moved_everything_is_used() {
+    fn of_a_robot_that_was_moved_nothing_is_left_out() {
         let moved = [(0.0, 0.0), (0.1, 9.0), (0.1, 9.0), (0.2, 9.1), (0.3, 9.2)];
         assert_eq!(used(&moved), [0.0, 9.0, 9.0, 9.1, 9.2]);
+        // Nothing confirms what is last.
+        assert_eq!(used(&[(0.0, 0.0), (0.1, 0.1), (0.2, 41.0)]), [0.0, 0.1]);
     }
 
     #[test]
