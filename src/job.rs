@@ -111,7 +111,7 @@ pub struct LogJob {
 /// A log that was opened.
 pub enum OpenLog {
     /// A table, read ahead.
-    Csv(Box<Ahead>, Option<AnyTrack>),
+    Csv(Box<Ahead>, Option<Box<AnyTrack>>),
     /// A recording.
     Mcap(Box<McapReadings>),
 }
@@ -128,7 +128,7 @@ impl OpenLog {
     /// The log itself, and the second file's poses where it does not see to those.
     pub fn source(&mut self) -> (&mut dyn Source, Option<&mut AnyTrack>) {
         match self {
-            Self::Csv(log, track) => (&mut **log, track.as_mut()),
+            Self::Csv(log, track) => (&mut **log, track.as_deref_mut()),
             Self::Mcap(log) => (&mut **log, None),
         }
     }
@@ -285,11 +285,11 @@ impl LogJob {
     /// # Errors
     /// It can't be read, is none, lacks columns or poses; a table without a rig.
     pub fn readings(&self, format: Format, input: Input, everything: bool) -> Result<OpenLog> {
-        let track = self.track()?.map(|(track, _)| track);
+        let track = self.track()?.map(|(track, _)| Box::new(track));
         if format != Format::Csv {
             self.check_rig()?;
             let options = Options { everything, ..self.options(PoseUse::Needed) };
-            let log = McapReadings::open(&self.input, input, self.rig.clone(), track, options)?;
+            let log = McapReadings::open(&self.input, input, self.rig.clone(), track.map(|track| *track), options)?;
             let log = log.followed_by(self.open_parts()?)?;
             return Ok(OpenLog::Mcap(Box::new(log)));
         }
@@ -452,7 +452,7 @@ impl FuseJob {
         }
         let (pose_source, mut notes) = match &log {
             OpenLog::Csv(_, track) => {
-                let bridged = track.as_ref().and_then(Track::bridged);
+                let bridged = track.as_ref().and_then(|track| track.bridged());
                 let sparse = bridged.map(|(within, step)| Finding::SparsePoses { within, step }.to_string());
                 (None, sparse.into_iter().collect())
             }

@@ -227,7 +227,13 @@ fn held(evidence: &Evidence) -> Option<Diagnosis> {
     let active = || evidence.sensors.iter().filter(|sensor| sensor.echoes >= FEWEST);
     let sensors = active().filter(|sensor| 3 * sensor.held > sensor.echoes).count() as u64;
     let (held, echoes) = active().fold((0, 0), |(held, echoes), sensor| (held + sensor.held, echoes + sensor.echoes));
-    (2 * sensors > active().count() as u64 && 5 * held > echoes).then_some(Diagnosis::Held { held, echoes, sensors })
+    // A value that hardly ever changes is a wall's.
+    let changes = 10 * held < 9 * echoes;
+    (2 * sensors > active().count() as u64 && 5 * held > echoes && changes).then_some(Diagnosis::Held {
+        held,
+        echoes,
+        sensors,
+    })
 }
 
 fn duplicates(evidence: &Evidence) -> Option<Diagnosis> {

@@ -178,6 +178,10 @@ fn values_that_most_sensors_repeat_on_the_way_are_held() {
     Drive::straight().ranges(|number, _, range| if number % 9 == 0 { range } else { f64::NAN }).is_silent();
     // One sensor along a smooth wall is honest.
     Drive::straight().ranges(|_, sensor, range| if sensor == 1 { 1.27 } else { range }).is_silent();
+    // Along one for the whole of the drive, too, whatever other sensors see.
+    let mut alone = Drive::straight().ranges(|_, _, _| 1.27);
+    alone.rows.iter_mut().for_each(|row| row.readings.truncate(1));
+    alone.is_silent();
     // So is a robot that stands.
     let mut standing = Drive::new(|along| Pose { x: if along < 1.0 { along } else { 1.0 }, y: 0.0, yaw: 0.0 });
     standing = standing.ranges(|number, _, range| if number < 20 { range } else { 1.5 });

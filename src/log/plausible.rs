@@ -43,6 +43,13 @@ impl<'a> Plausible<'a> {
         self.suspects.front().and_then(|row| Some((row.t, row.pose?)))
     }
 
+    /// Whether a later pose is nearer to the suspects than to the pose before them, and can be reached from there.
+    fn confirms(&self, at: &At) -> bool {
+        let (Some(suspect), Some(last)) = (self.suspect(), self.last) else { return false };
+        let distance = |from: &At| from.1.step_to(&at.1).distance;
+        suspect.0 < at.0 && self.allows(&suspect, at) && distance(&suspect) < distance(&last)
+    }
+
     /// Leaves the suspects out.
     fn drop_suspects(&mut self, problems: &mut dyn FnMut(Problem)) {
         for row in self.suspects.drain(..) {
@@ -55,7 +62,7 @@ impl<'a> Plausible<'a> {
 
     /// Decides on a record with a pose, and with it on those that wait; `false` where it has to wait itself.
     fn admit(&mut self, row: &mut Row, at: At, problems: &mut dyn FnMut(Problem)) -> bool {
-        if self.last.is_none_or(|last| self.allows(&last, &at)) {
+        if !self.confirms(&at) && self.last.is_none_or(|last| self.allows(&last, &at)) {
             // Another sensor of the suspects' time says nothing of them.
             if self.suspect().is_none_or(|suspect| suspect.0 != at.0) {
                 self.drop_suspects(problems);
@@ -67,7 +74,7 @@ impl<'a> Plausible<'a> {
             return true;
         }
         match self.suspect() {
-            Some(suspect) if suspect.0 < at.0 && self.allows(&suspect, &at) => {
+            Some(_) if self.confirms(&at) => {
                 self.ready.append(&mut self.suspects);
                 self.ready.push_back(std::mem::take(row));
                 self.last = Some(at);
@@ -134,11 +141,11 @@ mod tests {
     const S: i64 = 1_000_000_000;
 
     /// A log of nothing but poses: seconds and x.
-    struct Poses(std::vec::IntoIter<(f64, f64)>);
+    struct Poses<'a>(std::slice::Iter<'a, (f64, f64)>);
 
-    impl Source for Poses {
+    impl Source for Poses<'_> {
         fn next_row(&mut self, row: &mut Row, _: &mut dyn FnMut(Problem)) -> Result<Next> {
-            let Some((t, x)) = self.0.next() else { return Ok(Next::End) };
+            let Some(&(t, x)) = self.0.next() else { return Ok(Next::End) };
             row.t = (t * S as f64) as i64;
             row.pose = Some(Pose { x, y: 0.0, yaw: 0.0 });
             Ok(Next::Record)
@@ -163,7 +170,7 @@ mod tests {
 
     /// The x of the records that are used.
     fn used(poses: &[(f64, f64)]) -> Vec<f64> {
-        let mut log = Poses(poses.to_vec().into_iter());
+        let mut log = Poses(poses.iter());
         let mut log = Plausible::new(&mut log, MotionLimit::DEFAULT);
         let (mut row, mut used, mut problems) = (Row::default(), Vec::new(), 0);
         loop {
@@ -186,6 +193,13 @@ mod tests {
     fn of_a_robot_that_was_moved_everything_is_used() {
         let moved = [(0.0, 0.0), (0.1, 9.0), (0.1, 9.0), (0.2, 9.1), (0.3, 9.2)];
         assert_eq!(used(&moved), [0.0, 9.0, 9.0, 9.1, 9.2]);
+    }
+
+    #[test]
+    fn a_later_pose_speaks_for_the_nearer_one() {
+        // Both could be reached by then.
+        assert_eq!(used(&[(0.0, 0.0), (0.1, 1.5), (0.2, 1.6)]), [0.0, 1.5, 1.6]);
+        assert_eq!(used(&[(0.0, 0.0), (0.1, 1.5), (0.2, 0.1)]), [0.0, 0.1]);
     }
 
     #[test]

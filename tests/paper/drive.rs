@@ -6,8 +6,9 @@ use atm::{
     core::{
         Arc as RangeArc, ArcCrossing, Bounds, Echo, Fuser, Kind, MinAngle, Point2, Reading, Sink, TransversalMedian,
     },
+    echo::AnyEstimator,
     log::Row,
-    pipeline::{Defaults, readings},
+    pipeline::{Defaults, Emit, History, SensorModel, Settings, readings, settled_fuser},
     rig::{Ranging, Rig},
     storage::SettledSlots,
 };
@@ -28,6 +29,7 @@ pub const PAPER_ANGLE: f64 = 30.0;
 /// A drive of a Nomad 200 through a world, as a log and its truth.
 pub struct Drive {
     pub world: World,
+    pub sensors: Vec<SensorModel>,
     pub readings: Vec<Reading<f64>>,
     pub truth: Truth,
 }
@@ -50,7 +52,7 @@ impl Drive {
         let effects = if noise.is_empty() { Effects::default() } else { noise.parse().unwrap() };
         let sensors = Defaults::default().complete(&rig).unwrap();
         let simulation = Simulation::new(world.clone(), rig, BEAM, effects, seed);
-        let mut drive = Self { world, readings: Vec::new(), truth: Truth::default() };
+        let mut drive = Self { world, sensors, readings: Vec::new(), truth: Truth::default() };
         for sweep in simulation.sweeps() {
             let sweep = sweep.unwrap();
             for ((sensor, _), truth) in sweep.readings.iter().zip(&sweep.truth) {
@@ -59,7 +61,7 @@ impl Drive {
                 }
             }
             let row = Row { t: sweep.t, readings: sweep.readings, ..Row::default() };
-            drive.readings.extend(readings(&row, sweep.pose, &sensors));
+            drive.readings.extend(readings(&row, sweep.pose, &drive.sensors));
         }
         drive
     }
@@ -80,13 +82,19 @@ impl Drive {
         let estimator = TransversalMedian { min_angle, ..TransversalMedian::PAPER };
         let sensors = self.readings.iter().map(|reading| usize::from(reading.sensor) + 1).max().unwrap_or(1);
         let storage = SettledSlots::new(sensors, history).unwrap();
-        let mut fuser = Fuser::settled(estimator, Bounds::NONE, storage);
-        let mut fused = Fused::default();
-        for reading in &self.readings {
-            fuser.push(reading, &mut fused).unwrap();
-        }
-        fuser.finish(&mut fused);
-        fused
+        Fused::by(Fuser::settled(estimator, Bounds::NONE, storage), &self.readings)
+    }
+
+    /// As `atm fuse` does without a flag: spaced readings over a travel.
+    pub fn fuse_by_travel(&self) -> Fused {
+        let settings = Settings {
+            emit: Emit::Settled,
+            history: History::default(),
+            bounds: Bounds::NONE,
+            estimator: AnyEstimator::PAPER,
+            strict: true,
+        };
+        Fused::by(settled_fuser(TransversalMedian::PAPER, &settings, &self.sensors).unwrap(), &self.readings)
     }
 
     /// The centre of every cone.
@@ -122,6 +130,15 @@ impl Drive {
 }
 
 impl Fused {
+    fn by(mut fuser: Fuser<f64, SettledSlots<f64>>, readings: &[Reading<f64>]) -> Self {
+        let mut fused = Self::default();
+        for reading in readings {
+            fuser.push(reading, &mut fused).unwrap();
+        }
+        fuser.finish(&mut fused);
+        fused
+    }
+
     /// The echoes of these kinds.
     pub fn of(&self, kinds: &[Kind]) -> Vec<Estimate> {
         let echoes = self.echoes.iter().filter(|echo| kinds.contains(&echo.kind));

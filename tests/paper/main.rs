@@ -9,5 +9,6 @@ mod doorway;
 mod drive;
 mod page;
 mod pole;
+mod rates;
 mod spread;
 mod walls;

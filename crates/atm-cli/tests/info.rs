@@ -120,7 +120,7 @@ fn sensors_that_the_rig_lacks_or_that_are_silent_are_named() {
 
 #[test]
 fn held_values_are_a_problem_that_says_what_to_do() {
-    let rows: String = (0..20).map(|t| format!("{t},a,1.25,{t},0,0\n")).collect();
+    let rows: String = (0..20).map(|t| format!("{t},a,1.{},{t},0,0\n", t / 4)).collect();
     let found = info(&format!("t,sensor,range,x,y,yaw\n{rows}"), &[]).exits(0).json();
     assert!(problems(&found).contains("--drop-held"), "{found}");
 }

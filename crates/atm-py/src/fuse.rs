@@ -156,7 +156,7 @@ pub fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
 ///     The sensors: a :class:`Rig`, a built-in rig's name, or a TOML file.
 /// history : int, optional
 ///     The most readings of each sensor in the local map, 1 to 10000, spaced evenly over the travel that `reach` takes. Alone,
-///     without `reach`: the last so many readings of every sensor, wherever they were taken. None: 40, spaced.
+///     without `reach`: the last so many readings of every sensor, wherever they were taken. None: 50, spaced.
 /// min_angle : float, optional
 ///     Crossings count from this angle on, in radians, in [1, 90] degrees. None: 30 degrees (Sec. IV-B).
 /// range_resolution : float, optional

@@ -70,3 +70,50 @@ impl Tally {
         [beyond, close, clamped, wide].into_iter().flatten()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use atm_core::{Beam, Limits, RangeResolution};
+
+    use super::*;
+
+    /// What is found in readings between 0.2 m and 4 m with a beam in radians that the messages say.
+    fn found(ranges: impl IntoIterator<Item = f64>, beam: f64) -> Vec<Finding> {
+        let limits = Limits::new(0.2, 4.0).unwrap();
+        let range_resolution = RangeResolution::new(0.01).unwrap();
+        let sight = Sight { limits, beam: Beam::new(beam).unwrap(), range_resolution };
+        let mut tally = Tally::default();
+        for range in ranges {
+            tally.add(&Measured { field_of_view: beam, min: 0.2, max: 4.0, range }, &sight, true);
+        }
+        tally.findings("front").collect()
+    }
+
+    fn times(count: usize, range: f64) -> impl Iterator<Item = f64> {
+        std::iter::repeat_n(range, count)
+    }
+
+    #[test]
+    fn ordinary_readings_are_nothing_to_speak_of() {
+        assert_eq!(found((0..100).map(|k| 0.2 + 0.03 * f64::from(k)), 0.4), []);
+        // Nothing there all the time, by each of the values that drivers have for it; a few at the minimum.
+        for nothing in [f64::INFINITY, f64::NAN, 4.0, 4.1] {
+            assert_eq!(found(times(100, nothing), 0.4), [], "{nothing}");
+        }
+        assert_eq!(found(times(4, 0.2).chain(times(100, 1.0)), 0.4), []);
+        assert_eq!(found(times(19, f64::NEG_INFINITY), 0.4), [], "too few to say it");
+    }
+
+    #[test]
+    fn what_is_wrong_with_all_of_them_is_found() {
+        let is = |found: Vec<Finding>, wanted: fn(&Finding) -> bool| assert!(found.iter().any(wanted), "{found:?}");
+        is(found(times(20, 176.0), 0.4), |finding| matches!(finding, Finding::AllBeyondMaximum { readings: 20, .. }));
+        is(found(times(20, f64::NEG_INFINITY), 0.4), |finding| {
+            matches!(finding, Finding::AllTooClose { readings: 20, infinite: 20, .. })
+        });
+        is(found(times(10, 0.2).chain(times(50, 1.0)), 0.4), |finding| {
+            matches!(finding, Finding::ClampedAtMinimum { readings: (10, 60), .. })
+        });
+        is(found(times(1, 1.0), 3.0), |finding| matches!(finding, Finding::WideBeam { .. }));
+    }
+}

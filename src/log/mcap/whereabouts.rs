@@ -39,7 +39,7 @@ enum Chosen {
     /// The topic of this number.
     Topic(usize),
     /// A second file.
-    Track(AnyTrack),
+    Track(Box<AnyTrack>),
 }
 
 /// What of the poses is asked for by name.
@@ -136,7 +136,7 @@ impl Whereabouts {
         Self {
             tree: Tree::default(),
             topics: Vec::new(),
-            chosen: track.map(Chosen::Track),
+            chosen: track.map(|track| Chosen::Track(Box::new(track))),
             wish,
             home,
             limits,
@@ -402,7 +402,7 @@ impl Whereabouts {
     fn robot_frame(&self, seat: Seat) -> Result<Frame, Lost> {
         let prefix = seat.frame.and_then(|frame| self.tree.name(frame).rsplit_once('/'));
         let prefixed = |name: &&str| prefix.and_then(|(prefix, _)| self.tree.find(&format!("{prefix}/{name}")));
-        let own = ROBOT.iter().find_map(|name| prefixed(name));
+        let own = ROBOT.iter().find_map(prefixed);
         let named = own.or_else(|| ROBOT.iter().find_map(|name| self.tree.find(name)));
         let mut moving = self.tree.moving();
         match (named, moving.next(), moving.next()) {

@@ -12,7 +12,7 @@ pub struct LocalMapArgs {
     #[arg(long, value_name = "L", value_parser = positive_length)]
     pub reach: Option<f64>,
     /// The most readings of each sensor in the local map, spaced evenly over its travel; a number without --reach: the last N
-    /// of every sensor, wherever they were taken, as in the paper [default: auto, which is 40]
+    /// of every sensor, wherever they were taken, as in the paper [default: auto, which is 50]
     #[arg(long, value_name = "N|auto", value_parser = history)]
     pub history: Option<HistoryOption>,
     /// paper: the last 10 readings of every sensor, for a robot at 5 in/s that reads once a second

@@ -254,7 +254,9 @@ fn which_channels_are_read() {
     assert_eq!(kind("ros1", "tf/tfMessage"), Some(Kind::Transforms));
     assert_eq!(kind("protobuf", "foxglove.FrameTransform"), Some(Kind::Transform));
     assert_eq!(kind("json", "foxglove.PoseInFrame"), Some(Kind::Pose));
-    assert_eq!(kind("cdr", "sensor_msgs/msg/LaserScan"), None);
+    // Read where somebody asks for it, and in these encodings alone.
+    assert_eq!(kind("cdr", "sensor_msgs/msg/LaserScan"), Some(Kind::Scan));
+    assert_eq!(kind("json", "sensor_msgs/msg/LaserScan"), None);
     assert_eq!(kind("cbor", "sensor_msgs/msg/Range"), None);
     assert_eq!(kind("cdr", "my_msgs/msg/Range"), None);
 }
