@@ -98,7 +98,7 @@ pub const MARKS: [Style; 10] = [
     // Its arms reach out from under a disc.
     style("single", "single", Shape::Plus, 0x11_11_11, 0xf2_f2_f2),
     style("median", "median", Shape::Disc, 0x00_72_b2, 0x45_a2_e0),
-    style("wall", "wall", Shape::Nabla, 0x00_8a_64_u32, 0x1f_c0_92),
+    style("wall", "wall", Shape::Nabla, 0x00_8a_65, 0x1f_c0_92),
     style("point", "point", Shape::Diamond, 0x00_72_b2, 0x45_a2_e0),
 ];
 

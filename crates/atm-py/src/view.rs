@@ -4,9 +4,10 @@ use atm::{
     core::{Bounds, Consensus, RangeResolution, TransversalMedian},
     echo::AnyEstimator,
     error::Error,
-    job::{LogJob, MAX_GAP, McapWishes},
+    job::{LogJob, McapWishes},
     log::Input,
     pipeline::{Defaults, Emit, Settings},
+    track::MotionLimit,
 };
 use atm_lab::view::{MOST_READINGS, Method, Replay, Units, ViewJob};
 use pyo3::{prelude::*, types::PyDict};
@@ -60,11 +61,13 @@ pub fn _view(
     let job = ViewJob {
         log: LogJob {
             input: argument::path("input", input)?,
+            parts: Vec::new(),
             opens: Input::open,
             from: None,
             rig: rig.map(rig_of).transpose()?,
             poses: path("poses", poses)?,
-            max_gap: MAX_GAP,
+            max_gap: None,
+            max_speed: MotionLimit::default(),
             empty: None,
             defaults: Defaults { field_of_view: None, range_resolution: step },
             mcap: McapWishes::default(),

@@ -1,11 +1,6 @@
 use std::sync::Arc;
 
-use atm::{
-    intake::Defaults,
-    job::{MAX_GAP, McapWishes},
-    pipeline::History,
-    rig::Rig,
-};
+use atm::{intake::Defaults, job::McapWishes, pipeline::History, rig::Rig, track::MotionLimit};
 use atm_core::{Bounds, Consensus, MinAngle};
 
 use super::*;
@@ -13,11 +8,13 @@ use super::*;
 fn job(input: &str) -> ViewJob {
     let log = LogJob {
         input: input.to_owned(),
+        parts: Vec::new(),
         opens: Input::open,
         from: None,
         rig: Some(Arc::new(Rig::load("nomad200").unwrap())),
         poses: None,
-        max_gap: MAX_GAP,
+        max_gap: None,
+        max_speed: MotionLimit::default(),
         empty: None,
         defaults: Defaults::default(),
         mcap: McapWishes::default(),

@@ -27,7 +27,7 @@ _STYLES: dict[str, dict[str, Any]] = {
     "pair": {"marker": "^", "s": 16, "color": "#b07a00", "linewidths": 0},
     "single": {"marker": "+", "s": 40, "color": "#111111", "linewidths": 1.0},
     "median": {"marker": "o", "s": 14, "color": "#0072b2", "linewidths": 0},
-    "wall": {"marker": "v", "s": 16, "color": "#008a64", "linewidths": 0},
+    "wall": {"marker": "v", "s": 16, "color": "#008a65", "linewidths": 0},
     "point": {"marker": "D", "s": 12, "color": "#0072b2", "linewidths": 0},
 }
 _CROSSINGS = "#2b87b8"
