@@ -25,10 +25,10 @@ const LAYERS: [&[&str]; 5] = [
 ];
 
 /// Circles that are still to be opened: a line leaves with its circle, and none comes.
-const CIRCLES: [(&str, &[&str]); 6] = [
+const CIRCLES: [(&str, &[&str]); 8] = [
     ("atm-core", &["arc", "crossing", "scalar", "sensor", "sweep"]),
     ("atm-core", &["consensus::fit", "consensus::poll"]),
-    ("atm", &["intake", "log", "pipeline", "rig"]),
+    ("atm", &["diagnose", "intake", "log", "pipeline", "rig", "summary"]),
     (
         "atm",
         &[
@@ -40,7 +40,9 @@ const CIRCLES: [(&str, &[&str]); 6] = [
             "log::mcap::unpacking",
         ],
     ),
+    ("atm", &["log::mcap::home", "log::mcap::whereabouts"]),
     ("atm", &["log::mcap::plane", "log::mcap::reader"]),
+    ("atm", &["log::mcap::sensors", "log::mcap::tally"]),
     (
         "atm",
         &[

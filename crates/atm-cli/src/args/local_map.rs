@@ -1,9 +1,9 @@
 //! Which readings the local map holds.
 
-use atm::pipeline::History;
+use atm::{pipeline::History, storage::LatestSlots};
 use clap::{Args, ValueEnum};
 
-use super::values::{history, positive_length};
+use super::values::positive_length;
 
 #[derive(Debug, Clone, Args)]
 pub struct LocalMapArgs {
@@ -27,6 +27,16 @@ pub enum HistoryOption {
     Auto,
     /// So many.
     Most(usize),
+}
+
+/// A number of readings, or `auto`.
+fn history(text: &str) -> Result<HistoryOption, String> {
+    let most = LatestSlots::<f64>::MAX_HISTORY;
+    match text.parse() {
+        _ if text == "auto" => Ok(HistoryOption::Auto),
+        Ok(history) if (1..=most).contains(&history) => Ok(HistoryOption::Most(history)),
+        _ => Err(format!("{text} is neither auto nor in 1..={most}")),
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

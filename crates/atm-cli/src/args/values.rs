@@ -2,23 +2,11 @@
 
 use std::{fmt::Display, str::FromStr};
 
-use super::local_map::HistoryOption;
 use atm::{
     core::{Beam, Kind, MinAngle, RangeResolution, Reflector, Travel},
-    storage::LatestSlots,
     track::MotionLimit,
     units::{self, Scale},
 };
-
-/// A number of readings, or `auto`.
-pub fn history(text: &str) -> Result<HistoryOption, String> {
-    let most = LatestSlots::<f64>::MAX_HISTORY;
-    match text.parse() {
-        _ if text == "auto" => Ok(HistoryOption::Auto),
-        Ok(history) if (1..=most).contains(&history) => Ok(HistoryOption::Most(history)),
-        _ => Err(format!("{text} is neither auto nor in 1..={most}")),
-    }
-}
 
 /// A kind of either estimator, by its name.
 pub fn kind(text: &str) -> Result<&'static str, String> {
