@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, error::Error};
 
-use atm::{intake::Defaults, log::View, rig::Rig};
+use atm::{intake::Defaults, log::View, pipeline::History, rig::Rig};
 use atm_lab::{
     compare::{Assessment, Name, Options, Outcome, against_world, run, simulated},
     eval::Judge,
@@ -60,7 +60,7 @@ impl Drive {
         let simulation = Simulation::new(world.clone(), rig, Defaults::FIELD_OF_VIEW, effects, seed);
         let (recording, truth) = simulated(&simulation)?;
         let said: Vec<_> =
-            Name::ALL.iter().map(|name| run(*name, &recording, &Options::default())).collect::<Result<_, _>>()?;
+            Name::ALL.iter().map(|name| run(*name, &recording, &as_in_the_paper())).collect::<Result<_, _>>()?;
         let views: Vec<View> = recording.views().iter().copied().collect();
         let judge = Judge::new(world, Some(&truth), &views);
         let methods = against_world(&said, &judge, world, recording.readings(), recording.ids())?;
@@ -94,4 +94,9 @@ pub fn median(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let middle = |index: usize| values.get(index).copied();
     let half = values.len() / 2;
     if values.len() % 2 == 1 { middle(half) } else { Some((middle(half.checked_sub(1)?)? + middle(half)?) / 2.0) }
+}
+
+/// The last ten readings of every sensor, as the page says.
+fn as_in_the_paper() -> Options {
+    Options { history: History::PAPER, ..Options::default() }
 }

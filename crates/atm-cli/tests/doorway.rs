@@ -85,8 +85,9 @@ fn all_kinds_together_are_said_to_close_it_again() {
             println!("{emit} {}: {:.1} in of 36 in", kinds.join(","), width(&on_wall(points(&kept))));
         }
     }
-    let all = width(&on_wall(points(&fuse_sample(&[]).echoes())));
-    let crossed = width(&on_wall(points(&fuse_sample(&["--keep", "median,single"]).echoes())));
+    let latest =
+        |more: &[&str]| width(&on_wall(points(&fuse_sample(&[&["--emit", "latest"][..], more].concat()).echoes())));
+    let (all, crossed) = (latest(&[]), latest(&["--keep", "median,single"]));
     assert!(all < crossed, "the centers of arcs without crossings stand in the opening");
     // So the command says what to keep for driving.
     assert!(atm(["fuse", "--help"]).text().contains("--keep median,single"));

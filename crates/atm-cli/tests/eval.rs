@@ -19,10 +19,10 @@ fn the_sample_is_open_in_medians_and_singles_and_shut_in_all_kinds() {
         eval(fused.text(), &["--json"]).exits(0).json()
     };
     let width = |scores: &serde_json::Value| scores["doorway_width_m"].as_f64().expect("a width") / INCH;
-    let (sharp, all) = (scores(&["--keep", "median,single"]), scores(&[]));
+    let (sharp, all) = (scores(&["--keep", "median,single"]), scores(&["--emit", "latest"]));
     assert!(width(&sharp) >= 28.0 && width(&sharp) <= 36.0, "{}", width(&sharp));
     assert!(width(&all) < 20.0, "{}", width(&all));
-    let rows = fuse_sample(&[]).echoes();
+    let rows = fuse_sample(&["--emit", "latest"]).echoes();
     assert_eq!(all["points"].as_u64(), Some(rows.len() as u64));
     for kind in ["median", "single", "center"] {
         assert_eq!(all["by_kind"][kind]["points"].as_u64(), Some(count(&rows, kind) as u64), "{kind}");

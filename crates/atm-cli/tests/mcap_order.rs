@@ -178,7 +178,7 @@ fn a_topic_on_another_clock_is_named() {
 fn live_from_a_pipe_without_a_window_gives_each_echo_at_once() {
     let log = drive().laid_out(Layout::Bare);
     let settled = atm_fed(["fuse", "-", "--reorder", "0s", "--max-gap", "2s"], &log).exits(0);
-    assert_eq!(settled.echoes().len(), 621);
+    assert_eq!(settled.echoes().len(), 631);
     let latest = atm_fed(["fuse", "-", "--emit", "latest", "--reorder", "0s", "--max-gap", "2s"], &log).exits(0);
     assert!(latest.echoes().len() > 600);
 }

@@ -113,7 +113,7 @@ fn on_none_drop_leaves_out_the_centers() {
     let crossed: Vec<Echo> = all.into_iter().filter(|echo| !echo.is("center")).collect();
     assert_eq!(ran.exits(0).echoes(), crossed);
     assert_eq!(tally(&summary, "/echoes/center"), 0);
-    assert_eq!(tally(&summary, "/ignored_pairs"), 65);
+    assert_eq!(tally(&summary, "/ignored_pairs"), 55);
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn on_two_center_takes_the_center_of_the_arcs_that_were_ignored() {
     let (ran, summary) = sample_summary(&["--on-two", "center"]);
     assert_eq!(tally(&summary, "/ignored_pairs"), 0);
     let pairs: Vec<Echo> = ran.exits(0).echoes().into_iter().filter(|echo| echo.is("pair")).collect();
-    assert_eq!(pairs.len(), 65);
+    assert_eq!(pairs.len(), 55);
     for pair in pairs {
         assert_eq!((pair.crossings, pair.azimuth), (2, 0.0));
         assert_near(pair.resolution, BEAM * pair.range, 1e-12);
@@ -139,7 +139,7 @@ fn on_two_mean_takes_the_mean_of_the_two_crossings() {
         azimuths.entry((cells[0].into(), cells[1].into())).or_default().push(number(cells[6]));
     }
     let pairs: Vec<Echo> = echoes.into_iter().filter(|echo| echo.is("pair")).collect();
-    assert_eq!(pairs.len(), 65);
+    assert_eq!(pairs.len(), 55);
     for pair in pairs {
         let [one, two] = azimuths[&pair.key()][..] else { panic!("not two crossings: {pair:?}") };
         assert_near(pair.azimuth, (one + two) / 2.0, 1e-9);
@@ -184,14 +184,14 @@ fn a_larger_min_angle_leaves_fewer_crossings_and_a_shorter_interval() {
 #[test]
 fn min_step_skips_sensors_that_have_not_moved_far_enough() {
     // 5 in from sweep to sweep: every second one is 10 in on, 25 of 49.
-    let (ran, summary) = sample_summary(&["--min-step", "8in"]);
+    let (ran, summary) = sample_summary(&["--history", "10", "--min-step", "8in"]);
     assert_eq!((tally(&summary, "/readings"), tally(&summary, "/skipped/min_step")), (25 * 16, 24 * 16));
     let every_second: String = sample()
         .lines()
         .filter(|line| line.split(',').next().and_then(|t| t.parse::<f64>().ok()).is_none_or(|t| t % 2.0 == 0.0))
         .map(|line| format!("{line}\n"))
         .collect();
-    ran.exits(0).writes(fuse_text(every_second, &[]).exits(0).stdout);
+    ran.exits(0).writes(fuse_text(every_second, &["--history", "10"]).exits(0).stdout);
 }
 
 #[test]
@@ -317,6 +317,28 @@ fn history_is_how_many_readings_of_a_sensor_meet() {
 }
 
 #[test]
-fn history_is_ten_by_default() {
-    fuse_sample(&["--history", "10"]).exits(0).writes(fuse_sample(&[]).stdout);
+fn history_is_by_travel_by_default_and_by_count_as_a_number_alone() {
+    let default = fuse_sample(&[]).exits(0).stdout;
+    fuse_sample(&["--history", "auto"]).exits(0).writes(&default);
+    fuse_sample(&["--reach", "100in"]).exits(0).writes(&default);
+    fuse_sample(&["--reach", "100in", "--history", "50"]).exits(0).writes(&default);
+    let paper = fuse_sample(&["--preset", "paper"]).exits(0).stdout;
+    assert!(paper != default);
+    fuse_sample(&["--history", "10"]).exits(0).writes(&paper);
+    for more in [&["--history", "10"][..], &["--reach", "1m"]] {
+        fuse_sample(&[&["--preset", "paper"], more].concat()).exits(2).says(&["--preset"]).writes_nothing();
+    }
+}
+
+/// What version 0.1 gave out by default, but for how times are written.
+#[test]
+fn the_papers_preset_gives_what_it_always_gave() {
+    let (_, summary) = sample_summary(&["--preset", "paper"]);
+    for (kind, count) in [("median", 122), ("single", 57), ("center", 442)] {
+        assert_eq!(tally(&summary, &format!("/echoes/{kind}")), count, "{kind}");
+    }
+    assert_eq!(tally(&summary, "/ignored_pairs"), 65);
+    assert_eq!(summary["map_travel_m"], serde_json::Value::Null);
+    let (_, summary) = sample_summary(&[]);
+    assert_near(summary["map_travel_m"].as_f64().expect("a length"), 1.25 * 51.764 * INCH, 1e-4);
 }

@@ -37,6 +37,18 @@ fn fuse(more: &[&str]) -> Option<(Ran, Value)> {
     Some(with_summary(&args, ""))
 }
 
+/// As the paper has it: the last ten readings of every sensor.
+fn fuse_by_count(more: &[&str]) -> Option<(Ran, Value)> {
+    fuse(&[&["--preset", "paper"], more].concat())
+}
+
+#[test]
+fn with_no_flag_more_is_resolved_than_by_count_with_the_best_ones() {
+    let (Some((_, by_travel)), Some((_, by_count))) = (fuse(&[]), fuse_by_count(&["--drop-held"])) else { return };
+    let medians = |summary| tally(summary, "/echoes/median");
+    assert!(medians(&by_travel) >= 3 * medians(&by_count), "{by_travel}\n{by_count}");
+}
+
 #[test]
 fn one_command_fuses_it_and_names_every_kind() {
     let Some((ran, summary)) = fuse(&[]) else { return };
@@ -53,7 +65,7 @@ fn one_command_fuses_it_and_names_every_kind() {
 
 #[test]
 fn first_echoes_stand_where_the_first_readings_say() {
-    let Some((ran, _)) = fuse(&[]) else { return };
+    let Some((ran, _)) = fuse_by_count(&[]) else { return };
     // The robot stands at the origin; sensors 2, 3, 6 and 7 hear 2.32, 2.36, 2.16 and 1.19 m.
     let bearings = [("2", -22.5, 2.32), ("3", -7.5, 2.36), ("6", 37.5, 2.16), ("7", 90.0, 1.19)];
     let echoes = ran.echoes();
@@ -67,7 +79,9 @@ fn first_echoes_stand_where_the_first_readings_say() {
 
 #[test]
 fn held_values_hide_medians_and_singles_until_they_are_dropped() {
-    let (Some((_, held)), Some((ran, dropped))) = (fuse(&[]), fuse(&["--drop-held"])) else { return };
+    let (Some((_, held)), Some((ran, dropped))) = (fuse_by_count(&[]), fuse_by_count(&["--drop-held"])) else {
+        return;
+    };
     assert_eq!(tally(&held, "/skipped/held"), 0);
     let skipped = tally(&dropped, "/skipped/held");
     assert!(skipped > 1000, "{skipped}");
@@ -95,7 +109,8 @@ fn info_says_what_it_is_and_that_values_are_held() {
 #[test]
 fn consensus_has_jambs_as_points_and_the_corridor_as_walls() {
     let more = ["--held", "edges", "--estimator", "consensus", "--range-error", "2cm", "--keep", "point,wall"];
-    let (Some((consensus, summary)), Some((atm, _))) = (fuse(&more), fuse(&["--drop-held", "--keep", "median,single"]))
+    let (Some((consensus, summary)), Some((atm, _))) =
+        (fuse_by_count(&more), fuse_by_count(&["--drop-held", "--keep", "median,single"]))
     else {
         return;
     };
@@ -144,7 +159,7 @@ fn the_page_of_the_methods_shows_its_table_and_its_maps() {
     let Some((log, poses)) = recording() else { return };
     let scratch = Scratch::new();
     let drawn = scratch.name("pictures");
-    let args = ["--rig", "robond8", "--drop-held", "--range-error", "2cm", "--draw", &drawn];
+    let args = ["--rig", "robond8", "--preset", "paper", "--drop-held", "--range-error", "2cm", "--draw", &drawn];
     let ran = atm(["compare", &log, "--poses", &poses].iter().chain(&args)).exits(0);
     let (table, picture) = (as_on_the_page(ran.text()), fs::read(format!("{drawn}/side-by-side.png")).unwrap());
     let [page, picture_place] =
@@ -168,8 +183,9 @@ fn the_page_of_the_consensus_shows_what_is_drawn_of_it() {
     let (median, consensus, drawn) =
         (scratch.name("atm.csv"), scratch.name("consensus.csv"), scratch.name("drawn.svg"));
     let log_of = |command| [command, log.as_str(), "--poses", poses.as_str(), "--rig", "robond8"];
-    atm(log_of("fuse").iter().chain(&["--held", "drop", "-o", &median])).exits(0);
-    let more = ["--held", "edges", "--estimator", "consensus", "--range-error", "2cm", "-o", &consensus];
+    atm(log_of("fuse").iter().chain(&["--preset", "paper", "--held", "drop", "-o", &median])).exits(0);
+    let more =
+        ["--preset", "paper", "--held", "edges", "--estimator", "consensus", "--range-error", "2cm", "-o", &consensus];
     atm(log_of("fuse").iter().chain(&more)).exits(0);
     let page = read(root().join("docs/accuracy.md").to_str().expect("a path in UTF-8"));
     // Its panels, as the page has them between quotes.

@@ -24,7 +24,7 @@ fn is_whole(file: &[u8]) -> bool {
 fn an_output_called_mcap_is_a_recording_and_the_format_asked_for_wins() {
     let scratch = Scratch::new();
     let (recording, table) = (scratch.name("echoes.mcap"), scratch.name("table.MCAP"));
-    fuse_sample(&["-o", &recording]).exits(0).says(&["122 median"]).writes_nothing();
+    fuse_sample(&["-o", &recording]).exits(0).says(&["253 median"]).writes_nothing();
     let file = fs::read(&recording).unwrap();
     assert!(is_whole(&file));
     fuse_sample(&["-o", &table, "--to", "csv"]).exits(0);

@@ -60,8 +60,9 @@ fn world_file_rig_speed_and_rate_are_taken() {
     );
     let rig = scratch.file("r.toml", "[[sensor]]\nid = \"left, low\"\nyaw = \"90deg\"\n");
     let log = simulate(&[&world, "--rig", &rig, "--speed", "0.5m/s", "--rate", "2Hz"]).exits(0);
-    let rows: Vec<String> =
-        (0..5).map(|i| format!("{},\"left, low\",1,{},0,0", f64::from(i) / 2.0, f64::from(i) * 0.25)).collect();
+    let rows: Vec<String> = (0..5)
+        .map(|i| format!("{:?},\"left, low\",1.0,{:?},0.0,0.0", f64::from(i) / 2.0, f64::from(i) * 0.25))
+        .collect();
     log.writes(format!("t,sensor,range,x,y,yaw\n{}\n", rows.join("\n")));
 }
 

@@ -51,7 +51,7 @@ pub struct Columns<'a, T: Scalar> {
     pub sensor_x: &'a mut [T],
     /// The sensor's position.
     pub sensor_y: &'a mut [T],
-    /// The reading; +∞ where nothing is, NaN for any other one without echo.
+    /// The reading; where nothing is, the distance up to which that is said, negative; NaN for any other one without echo.
     pub radius: &'a mut [T],
     /// The reading's time.
     pub t: &'a mut [i64],
@@ -93,8 +93,8 @@ pub(crate) struct Entry<T: Scalar> {
     pub sensor_position: Point2<T>,
     pub arc: Option<Arc<T>>,
     pub boresight: Vector2<T>,
-    /// Whether it reports nothing as far as it reaches.
-    pub beyond: bool,
+    /// How far a reading reaches that reports nothing, in metres, possibly +∞.
+    pub beyond: Option<T>,
     pub t: i64,
     pub travel: Travel,
     pub arrival: u32,
@@ -111,8 +111,10 @@ pub(crate) struct Sight<T: Scalar> {
     pub length: T,
     /// tan(φ/4), as numerator and denominator.
     pub tangent: [T; 2],
-    /// Metres; +∞ where nothing is.
+    /// Metres. Without an echo, how far it reaches: there is nothing before that.
     pub range: T,
+    /// Whether there is an echo at that range.
+    pub echo: bool,
 }
 
 fn put<V>(column: &mut [V], slot: usize, value: V) {
@@ -138,7 +140,7 @@ impl<T: Scalar> Columns<'_, T> {
             // No arc to meet, but a sight: see [`Columns::sight`].
             None => {
                 let middle = entry.sensor_position + entry.boresight * entry.beam.quarter_tangent();
-                (middle, if entry.beyond { T::INFINITY } else { T::NAN }, T::NAN)
+                (middle, entry.beyond.map_or(T::NAN, |limit| -limit), T::NAN)
             }
         };
         put(self.middle_x, slot, middle.x);
@@ -224,20 +226,22 @@ impl<T: Scalar> Columns<'_, T> {
 
     /// What the slot's reading says of the space before it; `None` for one that was too close, or invalid.
     ///
-    /// A reading that reports nothing makes no arc. It is kept in the columns that an arc would take: +∞ as its radius, and
-    /// as the arc's middle its boresight from the sensor, as long as the tangent of a quarter of its beam.
+    /// A reading that reports nothing makes no arc. It is kept in the columns that an arc would take: as its radius the
+    /// distance it reaches, negative, and as the arc's middle its boresight from the sensor, as long as the tangent of a
+    /// quarter of its beam.
     #[inline(always)]
     pub(crate) fn sight(&self, slot: usize) -> Option<Sight<T>> {
         let Arc { sensor, middle, radius, reach } = self.arc(slot);
         let axis = middle - sensor;
-        if radius < T::INFINITY {
-            return Some(Sight { sensor, axis, length: radius, tangent: [reach, radius * T::TWO], range: radius });
+        if radius > T::ZERO {
+            let tangent = [reach, radius * T::TWO];
+            return Some(Sight { sensor, axis, length: radius, tangent, range: radius, echo: true });
         }
-        if !(radius > T::ZERO) {
+        if !(radius < T::ZERO) {
             return None;
         }
         let length = (axis.x * axis.x + axis.y * axis.y).square_root();
-        Some(Sight { sensor, axis, length, tangent: [length, T::ONE], range: radius })
+        Some(Sight { sensor, axis, length, tangent: [length, T::ONE], range: -radius, echo: false })
     }
 
     /// Whether a sensor at `place` that looks along `boresight` (of unit length) has moved by `step` since the reading in the

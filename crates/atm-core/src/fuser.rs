@@ -11,7 +11,7 @@ use crate::{
     partners::{Partners, Scope},
     pose::{Odometer, Travel, usable},
     scalar::Scalar,
-    sensor::{Beam, Meaning, Range, RangeResolution},
+    sensor::{Beam, Range, RangeResolution},
     storage::{SettledStorage, SnapshotStorage, Storage},
 };
 
@@ -54,7 +54,7 @@ impl<T: Scalar> Entry<T> {
             sensor_position: Point2::from(reading.pose.translation.vector),
             arc: reading.range.echo().map(|radius| Arc::new(&reading.pose, radius, &reading.beam)),
             boresight: Vector2::new(reading.pose.rotation.re, reading.pose.rotation.im),
-            beyond: reading.range.meaning() == Meaning::Beyond,
+            beyond: reading.range.limit(),
             t: reading.t,
             travel,
             arrival: 0,
@@ -355,7 +355,7 @@ impl<T: Scalar, S: Storage<T>, E: Estimator<T>> Fuser<T, S, E> {
         let sensor = slot.checked_div(columns.depth).unwrap_or(0) as u16;
         let (arc, t, arrival) = (columns.arc(slot), columns.time(slot), columns.arrived(slot));
         // A reading without echo has no arc, and nothing to report.
-        if let (true, Ok(range_resolution)) = (arc.radius < T::INFINITY, RangeResolution::new(resolution)) {
+        if let (true, Ok(range_resolution)) = (arc.radius > T::ZERO, RangeResolution::new(resolution)) {
             self.report(arrival, &ReportedArc { arc, t, sensor, field_of_view, range_resolution }, scope, sink);
         }
     }

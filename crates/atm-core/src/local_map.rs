@@ -280,7 +280,7 @@ impl<S> LocalMap<S> {
         let Some(ring) = columns.rings.get_mut(usize::from(sensor)) else { return false };
         let is_held = |age| {
             let slot = usize::from(sensor) * depth + back(ring.newest, age, depth);
-            columns.radius.get(slot).copied().filter(|radius| radius.finite()) == range
+            columns.radius.get(slot).copied().filter(|radius| *radius > T::ZERO) == range
         };
         if ring.present < 2 || !is_held(0) || !is_held(1) {
             return false;

@@ -83,7 +83,7 @@ impl<T: Scalar> Limits<T> {
     /// What a raw reading in metres means. ±∞ as in REP 117; a reading at its maximum is none.
     pub fn classify(&self, range: T) -> Range<T> {
         if range >= self.max {
-            Range::BEYOND
+            Range::beyond(self.max)
         } else if range > T::ZERO && range >= self.min {
             Range { meaning: Meaning::Echo, metres: range }
         } else if range == -T::INFINITY || (range >= T::ZERO && range <= self.min) {
@@ -118,12 +118,17 @@ pub struct Range<T> {
 }
 
 impl<T: Scalar> Range<T> {
-    /// Nothing within reach.
-    pub const BEYOND: Self = Self { meaning: Meaning::Beyond, metres: T::NAN };
+    /// Nothing, however far.
+    pub const BEYOND: Self = Self::beyond(T::INFINITY);
     /// Something nearer than the sensor can measure.
     pub const TOO_CLOSE: Self = Self { meaning: Meaning::TooClose, metres: T::NAN };
     /// No reading.
     pub const INVALID: Self = Self { meaning: Meaning::Invalid, metres: T::NAN };
+
+    /// Nothing up to `limit`, the sensor's own maximum range in metres, possibly +∞: what lies beyond is not denied.
+    pub const fn beyond(limit: T) -> Self {
+        Self { meaning: Meaning::Beyond, metres: limit }
+    }
 
     /// What it is.
     pub const fn meaning(&self) -> Meaning {
@@ -134,6 +139,14 @@ impl<T: Scalar> Range<T> {
     pub fn echo(&self) -> Option<T> {
         match self.meaning {
             Meaning::Echo => Some(self.metres),
+            _ => None,
+        }
+    }
+
+    /// Up to where nothing is, in metres, where it is [`Meaning::Beyond`]; possibly +∞.
+    pub fn limit(&self) -> Option<T> {
+        match self.meaning {
+            Meaning::Beyond => Some(self.metres),
             _ => None,
         }
     }

@@ -447,10 +447,13 @@ impl Whereabouts {
         }
     }
 
-    /// The robot above a sensor's frame: what moves in the fixed frame, whatever moves on the robot.
+    /// The robot above a sensor's frame: by its name, else what moves in the fixed frame, whatever moves on the robot. Not the frame
+    /// of its odometry, which moves in a map where localisation corrects it.
     fn robot_below(&self, frame: Frame, fixed: Frame) -> Frame {
-        let below = self.tree.path(frame).take_while(|frame| *frame != fixed);
-        below.filter(|frame| self.tree.moves(*frame)).last().unwrap_or(frame)
+        let below = || self.tree.path(frame).take_while(|frame| *frame != fixed);
+        let named = below().filter(|frame| is_robot(self.tree.name(*frame))).last();
+        let is_moved = |frame: &Frame| self.tree.moves(*frame) && !is_odometry(self.tree.name(*frame));
+        named.or_else(|| below().filter(is_moved).last()).unwrap_or(frame)
     }
 
     fn by_topic(&self, seat: Seat, topic: &Topic) -> Result<(Placed, Wide), Lost> {

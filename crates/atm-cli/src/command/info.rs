@@ -16,7 +16,7 @@ use atm::{
         mcap::McapReadings,
         sorted::Sorted,
     },
-    pipeline::AnyTrack,
+    pipeline::{AnyTrack, History},
     rig::{Rig, Sensor},
     survey::{Survey, survey},
 };
@@ -180,7 +180,7 @@ fn travel(findings: &Findings) -> Option<Travel> {
     let reach = evidence.reach().map_or(PAPER_REACH, |reach| reach.min(PAPER_REACH));
     let needs = resolution::travel(reach, &MinAngle::PAPER).ok()?;
     // By default it spans what is needed.
-    Some(Travel { needs, reach, spans: map_travel(evidence, MapSpan::Travel(needs)) })
+    Some(Travel { needs, reach, spans: map_travel(evidence, MapSpan::Travel(needs * History::MARGIN)) })
 }
 
 fn as_json(findings: &Findings) -> String {

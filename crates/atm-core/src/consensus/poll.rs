@@ -125,7 +125,7 @@ impl<'a, T: Scalar> Poll<'a, T> {
     fn count(&self, sector: &Sector<T>) -> Votes {
         let (mut point, mut wall) = (Ballot::new(), Ballot::new());
         for (_, witness) in self.witnesses() {
-            if witness.range < T::INFINITY {
+            if witness.echo {
                 self.vote_for_point(sector, &mut point, &witness);
                 self.vote_for_wall(sector, &mut wall, &witness);
             }
@@ -206,7 +206,7 @@ impl<'a, T: Scalar> Poll<'a, T> {
             for (_, witness) in self.witnesses() {
                 let w = end - witness.sensor;
                 let offset_squared = dot(w, w) - witness.range * witness.range;
-                if witness.range < T::INFINITY && offset_squared <= self.window * self.window {
+                if witness.echo && offset_squared <= self.window * self.window {
                     let votes = votes_for_wall(offset_squared);
                     let range = [witness.range - self.tolerance.agree, witness.range + self.tolerance.agree];
                     if votes > 0 {

@@ -25,8 +25,10 @@ pub(super) struct Witness<T: Scalar> {
     pub sensor: Point2<T>,
     /// Along the boresight.
     axis: Vector2<T>,
-    /// Metres; +∞ where there is nothing.
+    /// Metres. Without an echo, how far it reaches.
     pub range: T,
+    /// Whether there is an echo at that range.
+    pub echo: bool,
     /// Of half the beam, times `scale` over the axis's length.
     cos: T,
     /// The same.
@@ -67,6 +69,7 @@ impl<T: Scalar> Witness<T> {
             sensor: sight.sensor,
             axis: sight.axis,
             range: sight.range,
+            echo: sight.echo,
             cos: b - a,
             sin: T::TWO * numerator * denominator,
             scale: (a + b) * sight.length,
@@ -122,7 +125,7 @@ impl<T: Scalar> Witness<T> {
     fn vote(&self, distance: T, towards: Vector2<T>, tolerance: &Tolerance<T>) -> Vote<T> {
         let farther = self.range - distance;
         if farther.magnitude() <= tolerance.agree {
-            if self.sees(towards) { Vote::For(farther) } else { Vote::Silent }
+            if self.echo && self.sees(towards) { Vote::For(farther) } else { Vote::Silent }
         } else if farther > tolerance.beyond && self.surely_sees(towards) {
             Vote::Against
         } else {
@@ -139,7 +142,15 @@ mod tests {
         /// At a place, looking along a heading (degrees) with half a beam of 30°.
         pub fn looking(sensor: Point2<f64>, heading_deg: f64, range: f64) -> Self {
             let (half, (sin, cos)) = (30f64.to_radians(), heading_deg.to_radians().sin_cos());
-            Self { sensor, axis: Vector2::new(cos, sin), range, cos: half.cos(), sin: half.sin(), scale: 1.0 }
+            Self {
+                sensor,
+                axis: Vector2::new(cos, sin),
+                range,
+                echo: true,
+                cos: half.cos(),
+                sin: half.sin(),
+                scale: 1.0,
+            }
         }
     }
 
@@ -159,7 +170,11 @@ mod tests {
     #[test]
     fn point_clearly_before_the_reading_is_spoken_against_and_behind_it_not() {
         assert_eq!(witness(5.1).on_point(Point2::new(4.8, 1.4), &INCH), Vote::Against);
-        assert_eq!(witness(f64::INFINITY).on_point(Point2::new(4.8, 1.4), &INCH), Vote::Against);
+        let nothing = |limit: f64| Witness { echo: false, ..witness(limit) };
+        assert_eq!(nothing(f64::INFINITY).on_point(Point2::new(4.8, 1.4), &INCH), Vote::Against);
+        assert_eq!(nothing(5.1).on_point(Point2::new(4.8, 1.4), &INCH), Vote::Against);
+        assert_eq!(nothing(5.0).on_point(Point2::new(4.8, 1.4), &INCH), Vote::Silent);
+        assert_eq!(nothing(4.9).on_point(Point2::new(4.8, 1.4), &INCH), Vote::Silent);
         assert_eq!(witness(4.9).on_point(Point2::new(4.8, 1.4), &INCH), Vote::Silent);
     }
 
