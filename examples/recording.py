@@ -53,8 +53,8 @@ print(f"{len(readings[0])} readings; nothing came back of {np.isinf(readings[2])
 # %% [markdown]
 # ## Fusing
 #
-# The ring repeats a sensor's last value until it has a new one. `drop_held` leaves the repeats out; without it, ten slots of
-# history hold two or three true readings.
+# The ring repeats a sensor's last value until it has a new one, and a repeated value is drawn where the robot is by now, not where
+# it was measured. `drop_held` leaves the repeats out.
 
 # %%
 as_it_is = atm.fuse(*readings, rig=rig)

@@ -115,7 +115,7 @@ def test_sample_drive(doorway: Any) -> None:
     from reference import Log
 
     expected = fuse(Log(t, sensor, *rest), mounts, Method())
-    echoes = atm.fuse(*doorway, rig="nomad200")
+    echoes = atm.fuse(*doorway, rig="nomad200", preset="paper")
     assert Counter(echoes["kind"].tolist()) == Counter(echo.kind for echo in expected.echoes)
     assert Counter(echoes["kind"].tolist()) == {"median": 122, "single": 57, "center": 442}
     np.testing.assert_allclose(echoes["x"], [echo.x for echo in expected.echoes], rtol=0, atol=POSITION)

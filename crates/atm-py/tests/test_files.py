@@ -37,7 +37,7 @@ def test_writes_what_the_command_writes(root: Path, command: Callable[..., Any],
     assert ours.read_bytes() == theirs.read_bytes()
     assert counts == json.loads(summary.read_text())
     assert set(counts) >= SUMMARY
-    assert counts["echoes"]["median"] == 122
+    assert counts["echoes"]["median"] == 253
     assert counts["input_damaged"] is False
 
 

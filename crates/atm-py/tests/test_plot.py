@@ -47,7 +47,7 @@ def test_every_echo_is_drawn_by_its_kind(doorway: Readings, ax: Any) -> None:
     assert plt.gcf().axes == [], "something was drawn on the current figure"
     assert ax.get_aspect() == 1.0
     labels = {text.get_text() for text in ax.get_legend().get_texts()}
-    assert "median: 122" in labels
+    assert "median: 253" in labels
 
 
 def test_only_some_kinds(doorway: Readings, ax: Any) -> None:
