@@ -118,8 +118,13 @@ impl EchoSink for Table {
 fn fuse(options: u8, file: &[u8], format: &TableFormat, rig: &Arc<Rig>) {
     let Ok(sensors) = Defaults::default().complete(rig) else { return };
     let emit = if options & 64 == 0 { Emit::Settled } else { Emit::Latest };
-    let settings =
-        Settings { emit, history: History::ByCount(2), bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: options & 128 != 0 };
+    let settings = Settings {
+        emit,
+        history: History::ByCount(2),
+        bounds: Bounds::NONE,
+        estimator: AnyEstimator::PAPER,
+        strict: options & 128 != 0,
+    };
     let Ok(mut source) = open(options & !0b1100, whole(file), format, Arc::clone(rig)) else { return };
     let ids = rig.sensors().iter().map(|sensor| sensor.id());
     let mut table = Table(TableWriter::echoes(Vec::new(), ids).expect("memory"));

@@ -153,7 +153,13 @@ impl EchoSink for Sane {
 fn fuse(options: u8, file: &[u8]) {
     let Ok(mut source) = open(options, "-", whole(file)) else { return };
     let emit = if options & 128 == 0 { Emit::Settled } else { Emit::Latest };
-    let settings = Settings { emit, history: History::ByCount(2), bounds: Bounds::NONE, estimator: AnyEstimator::PAPER, strict: false };
+    let settings = Settings {
+        emit,
+        history: History::ByCount(2),
+        bounds: Bounds::NONE,
+        estimator: AnyEstimator::PAPER,
+        strict: false,
+    };
     let (summary, _) = pipeline::fuse(&mut source, None, &[], &settings, &mut Sane, &mut |_| ());
     assert_eq!(summary.written, summary.echoes.total());
 }

@@ -5,10 +5,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::diagnosis::HeadingForm;
 use crate::track::Pose;
 
+/// What a heading may be meant as, and how it then becomes radians, counter-clockwise from x.
+type Form = (Option<HeadingForm>, fn(f64) -> f64);
+
 /// Distance over which a direction of travel is taken, in metres.
 const STEP: f64 = 0.05;
 /// The way a heading may be written, each turned into radians counter-clockwise from x.
-const FORMS: [(Option<HeadingForm>, fn(f64) -> f64); 6] = [
+const FORMS: [Form; 6] = [
     (None, |yaw| yaw),
     (Some(HeadingForm::Degrees), f64::to_radians),
     (Some(HeadingForm::Clockwise), |yaw| -yaw),

@@ -142,7 +142,8 @@ fn sensors_that_are_too_close_or_hear_nothing_all_the_time_are_told() {
 
 #[test]
 fn a_largest_range_that_piles_up_stands_for_nothing() {
-    let clip = |limit: f64| move |number: usize, _: u16, range: f64| if number % 3 == 0 { limit } else { range };
+    let clip =
+        |limit: f64| move |number: usize, _: u16, range: f64| if number.is_multiple_of(3) { limit } else { range };
     let found = Drive::straight().ranges(clip(3.2)).only();
     says(&found, &["3.20 m stands for nothing", "of 400 echoes", "max_range = \"3.2m\""]);
     // Values a little below it: a wall.

@@ -2,9 +2,9 @@ use super::*;
 use crate::error::Reason;
 
 /// Records from a list: time in seconds, x of the pose.
-struct Listed(std::vec::IntoIter<(f64, Option<f64>)>);
+struct Listed<'a>(std::iter::Copied<std::slice::Iter<'a, (f64, Option<f64>)>>);
 
-impl Source for Listed {
+impl Source for Listed<'_> {
     fn next_row(&mut self, row: &mut Row, problems: &mut dyn FnMut(Problem)) -> Result<Next> {
         row.readings.clear();
         let Some((t, x)) = self.0.next() else { return Ok(Next::End) };
@@ -37,7 +37,7 @@ impl Source for Listed {
 
 /// Times and x of what comes out; NaN for a record that is unusable, by which a caller is given back control.
 fn joined(records: &[(f64, Option<f64>)]) -> Vec<(f64, Option<f64>)> {
-    let mut source = Joined::new(Listed(records.to_vec().into_iter()), 500_000_000);
+    let mut source = Joined::new(Listed(records.iter().copied()), 500_000_000);
     let (mut row, mut rows, mut problems) = (Row::default(), Vec::new(), 0);
     loop {
         match source.next_row(&mut row, &mut |_| problems += 1).unwrap() {
