@@ -287,6 +287,10 @@ fn check_pace(held: &Held<'_, i64>) -> PyResult<()> {
         instants += u64::from(last.replace(t).is_some_and(|last| last != t));
     }
     let (Some(&first), Some(last)) = (view.first(), last) else { return Ok(()) };
+    // What goes back is refused as that.
+    if last <= first {
+        return Ok(());
+    }
     let span = last.abs_diff(first);
     if instants == 0 || span / instants >= SHORTEST {
         return Ok(());

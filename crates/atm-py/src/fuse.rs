@@ -311,7 +311,7 @@ pub fn fuse<'py>(
 /// Parameters
 /// ----------
 /// t, sensor, range_, x, y, yaw, rig, history, min_angle, range_resolution, field_of_view, emit, on_none, on_two, max_age, \
-/// max_travel, min_step, drop_held, sensor_index, t_unit
+/// max_travel, min_step, drop_held, sensor_index, reach, preset, t_unit
 ///     As in :func:`fuse`.
 ///
 /// Returns

@@ -85,7 +85,8 @@ def options(method: Method) -> dict[str, Any]:
 
 def flags(method: Method) -> list[str]:
     """The same as flags of ``atm fuse``."""
-    chosen = ["--history", str(method.history), "--min-angle", f"{method.min_angle!r}rad", "--emit", method.emit]
+    # Whatever the drives draw is a motion of the robot's.
+    chosen = ["--max-speed", "1e9m/s", "--history", str(method.history), "--min-angle", f"{method.min_angle!r}rad", "--emit", method.emit]
     chosen += ["--on-none", method.on_none, "--on-two", method.on_two]
     if method.drop_held:
         chosen.append("--drop-held")

@@ -39,7 +39,7 @@ def test_times_come_back_in_their_type(doorway: Readings, kind: Any) -> None:
 
 def test_nanoseconds_beyond_the_digits_of_a_float() -> None:
     t = np.array([2**60 + 1, 2**60 + 2, 2**60 + 3])
-    found = atm.fuse(t, [0, 0, 0], [1.0] * 3, [0.0] * 3, [0.0] * 3, [0.0] * 3, rig="nomad200")
+    found = atm.fuse(t, [0, 0, 0], [1.0] * 3, [0.0] * 3, [0.0] * 3, [0.0] * 3, rig="nomad200", t_unit="ns")
     assert found["t"].tolist() == t.tolist()
 
 

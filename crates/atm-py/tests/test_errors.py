@@ -166,7 +166,6 @@ DOMAINS: list[tuple[str, Any]] = [
     ("history", 2**70),
     ("history", 2.5),
     ("history", "ten"),
-    ("history", None),
     ("min_angle", 0.0),
     ("min_angle", -0.5),
     ("min_angle", 0.9 * np.deg2rad(1)),

@@ -103,7 +103,8 @@ def test_time_that_goes_back_between_pushes_is_refused() -> None:
     fuser.push(10, 0, 1.0, 0.0, 0.0, 0.0)
     with pytest.raises(ValueError, match=r"\bt\b"):
         fuser.push(9, 0, 1.0, 0.0, 0.0, 0.0)
-    assert len(fuser.push(10, 0, 1.0, 0.0, 0.0, 0.0)) == 1
+    assert fuser.push(10, 0, 1.0, 0.0, 0.0, 0.0) == [], "a second reading at one time and place is none"
+    assert len(fuser.push(10, 1, 1.0, 0.0, 0.0, 0.0)) == 1
 
 
 def test_a_refused_push_leaves_the_fuser_as_it_was(doorway: Readings) -> None:

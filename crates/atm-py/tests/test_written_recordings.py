@@ -118,7 +118,7 @@ def test_echoes_are_those_of_the_table(recording: Recording, tables: Any) -> Non
             assert (float(x), float(y), float(point["z"])) == (float(row["x"]), float(row["y"]), 0.0)
             for name in ("range", "azimuth", "resolution", "significance"):
                 assert float(point[name]) == float(row[name])
-    assert next(rows, None) is None and count == 621
+    assert next(rows, None) is None and count == 631
 
 
 def test_crossings_are_those_of_the_table(recording: Recording, tables: Any) -> None:
@@ -165,7 +165,7 @@ def test_scores_of_echoes_that_others_wrote_again_are_those_of_the_table(
     table, again = tmp_path / "echoes.csv", written_again(recording, tmp_path / "again.mcap", **layout)
     command("fuse", root / "examples/doorway.csv", "--rig", "nomad200", "-o", table)
     scores = [command("eval", echoes, "--world", "doorway", "--json").stdout for echoes in (table, again)]
-    assert scores[0] == scores[1] and '"points": 621' in scores[0]
+    assert scores[0] == scores[1] and '"points": 631' in scores[0]
 
 
 def colors(points: np.ndarray) -> Iterator[tuple[int, int, int]]:

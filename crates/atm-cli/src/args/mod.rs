@@ -24,11 +24,12 @@ pub use self::{
     compare::Compare,
     draw::{Draw, PanelSpec},
     eval::Eval,
+    fuse::HeldOption,
     simulate::Simulate,
     view::View,
 };
 pub use self::{
-    fuse::{Emit, Fuse, HeldOption, NoneOption, TwoOption},
+    fuse::{Emit, Fuse, NoneOption, TwoOption},
     info::Info,
     plan::Plan,
 };
